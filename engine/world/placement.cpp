@@ -14,6 +14,7 @@
 #include "engine/models/edits.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/models/water/water_surface.hpp"
+#include "engine/world/compass.hpp"
 #include "engine/world/ground_blends.hpp"
 #include "engine/world/water.hpp"
 
@@ -126,11 +127,9 @@ Scattering::Scattering(const World& world, const models::ModelType& type, const 
   if (!world.shaped.roads.empty() && world.shaped.layer)
     roads_ =
         world.shaped.layer->ground.roads_in(models::QuadCoord::of(block), world.block_size_m());
-  if (!scatter.limits_depth() && world.shaped.has_water() && world.shaped.layer)
-    has_water_ =
-        world.shaped.layer->ground.network != nullptr ||
-        !world.shaped.layer->ground.water_in(models::QuadCoord::of(block), world.block_size_m())
-             .empty();
+  if (world.shaped.has_water() && world.shaped.layer)
+    has_rivers_ = world.shaped.layer->ground.may_have_water(
+        block, scatter.needs_water() ? scatter.near_water_m : 0, world.block_size_m());
 }
 
 // True if the limits allow this ground.
@@ -138,8 +137,10 @@ bool Scattering::may_stand(const models::GroundPoint& ground, glm::dvec2 local_m
   if (!(ground.height_m >= scatter_.min_height_m && ground.height_m <= scatter_.max_height_m &&
         ground.normal.y >= min_up_))
     return false;
-  if (scatter_.limits_depth() && depth_m(ground.height_m, local_m) > scatter_.max_depth_m)
-    return false;
+  if (scatter_.limits_depth()) {
+    const auto water = water_over(local_m);
+    if (water && water->depth_m(ground.height_m) > scatter_.max_depth_m) return false;
+  }
   if (!palette_) return true;
   const GroundKind kind = main_kind(
       ground_blends(*palette_, static_cast<float>(ground.height_m), ground.normal,
@@ -147,30 +148,22 @@ bool Scattering::may_stand(const models::GroundPoint& ground, glm::dvec2 local_m
   return (scatter_.mask.ground >> static_cast<unsigned>(kind) & 1U) != 0;
 }
 
-// The depth of the water of the world's function, in metres.
-double Scattering::depth_m(double ground_m, glm::dvec2 local_m) const {
-  const auto water = function_water_surface(world_, {block_, {local_m.x, 0, local_m.y}});
-  return water ? water->depth_m(ground_m) : 0;
+// The surface of the water of the world's function.
+std::optional<WaterSurface> Scattering::water_over(glm::dvec2 local_m) const {
+  return has_rivers_ ? function_water_surface(world_, {block_, {local_m.x, 0, local_m.y}})
+                     : sea_surface(world_);
 }
 
 // True if there is water at the position, or on one of two rings of eight places around it.
 bool Scattering::is_near_water(const models::BlockGround& ground, glm::dvec2 corner_m,
                                glm::dvec2 local_m) const {
-  constexpr double kDiagonal = 0.70710678118654752;
-  constexpr std::array<glm::dvec2, 8> kWays{{{1, 0},
-                                             {kDiagonal, kDiagonal},
-                                             {0, 1},
-                                             {-kDiagonal, kDiagonal},
-                                             {-1, 0},
-                                             {-kDiagonal, -kDiagonal},
-                                             {0, -1},
-                                             {kDiagonal, -kDiagonal}}};
   const auto is_wet = [&](glm::dvec2 at_m) {
-    return depth_m(ground.at(corner_m + at_m).height_m, at_m) > 0;
+    const auto water = water_over(at_m);
+    return water && water->depth_m(ground.at(corner_m + at_m).height_m) > 0;
   };
   if (is_wet(local_m)) return true;
   for (const double share : {1.0, 0.5}) {
-    for (const glm::dvec2& way : kWays) {
+    for (const glm::dvec2& way : kCompass) {
       if (is_wet(local_m + way * (share * scatter_.near_water_m))) return true;
     }
   }
@@ -179,7 +172,7 @@ bool Scattering::is_near_water(const models::BlockGround& ground, glm::dvec2 cor
 
 // True if a road, water or a mask excludes the instance at this position.
 bool Scattering::is_left_out(std::uint32_t index, glm::dvec2 local_m, double ground_m) const {
-  if (has_water_) {
+  if (has_rivers_ && !scatter_.limits_depth()) {
     const auto water =
         world_.shaped.layer->ground.water_over(block_, local_m, static_cast<double>(size_m_));
     if (water && (water->widths <= 0.5 || water->surface_m > ground_m)) return true;

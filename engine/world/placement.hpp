@@ -18,6 +18,8 @@
 
 namespace psygen::world {
 
+struct WaterSurface;  // water.hpp
+
 // The index of a block's terrain among its meshes. Indices of models start at 0.
 inline constexpr std::uint32_t kTerrainIndex = UINT32_MAX;
 // A model that an edit has placed has this index plus its id. Ids end at kMaxEditId.
@@ -67,7 +69,7 @@ class Scattering {
   bool may_stand(const models::GroundPoint& ground, glm::dvec2 local_m) const;
   bool is_near_water(const models::BlockGround& ground, glm::dvec2 corner_m,
                      glm::dvec2 local_m) const;
-  double depth_m(double ground_m, glm::dvec2 local_m) const;
+  std::optional<WaterSurface> water_over(glm::dvec2 local_m) const;
   bool is_left_out(std::uint32_t index, glm::dvec2 local_m, double ground_m) const;
 
   const World& world_;
@@ -81,7 +83,9 @@ class Scattering {
   float min_up_;
   std::optional<Palette> palette_;                // set if the mask selects kinds of ground
   std::vector<const models::GroundEdit*> roads_;  // roads that may cross the block
-  bool has_water_ = false;  // rivers and lakes may cross it, and no instance stands in them
+  // Rivers and lakes of the world's function may cross the block, or lie as near as an instance
+  // may ask.
+  bool has_rivers_ = false;
   SlopeParameters slope_;
 };
 

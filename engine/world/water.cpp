@@ -43,11 +43,7 @@ std::optional<WaterSurface> surface_over(const World& world, const models::EditL
           .body = body->body};
     }
   }
-  if (!has_sea) return std::nullopt;
-  WaterSurface sea;
-  sea.surface_m = world.water.level_m;
-  sea.body = kSea;
-  return sea;
+  return sea_surface(world);
 }
 
 }  // namespace
@@ -63,6 +59,14 @@ std::optional<WaterSurface> water_surface(const World& world, const core::WorldP
 std::optional<WaterSurface> function_water_surface(const World& world,
                                                    const core::WorldPosition& at) {
   return surface_over(world, world.shaped.layer.get(), at);
+}
+
+std::optional<WaterSurface> sea_surface(const World& world) {
+  if (!world.water.exists()) return std::nullopt;
+  WaterSurface sea;
+  sea.surface_m = world.water.level_m;
+  sea.body = kSea;
+  return sea;
 }
 
 std::uint64_t bodies_hash_in(const World& world, core::BlockCoord block) {

@@ -60,6 +60,8 @@ std::optional<WaterSurface> water_surface(const World& world, const core::WorldP
 // The same without the edits of the world: that of its function.
 std::optional<WaterSurface> function_water_surface(const World& world,
                                                    const core::WorldPosition& at);
+// The same without rivers and lakes: the sea, which is the same at all places.
+std::optional<WaterSurface> sea_surface(const World& world);
 
 // Returns the water at a place whose ground has this height in metres.
 WaterPoint water_at(const World& world, const core::WorldPosition& at, double ground_m);

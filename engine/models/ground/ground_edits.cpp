@@ -156,12 +156,11 @@ bool same(const Cell* a, const Cell* b, const Area& area, int whole) {
   return true;
 }
 
-// Returns the edits that may reach a node, each once, for which `is_wanted`(edit). A cell
+// Returns the edits that may reach an area, each once, for which `is_wanted`(edit). A cell
 // with `lacks`(cell, its area) has none of them.
 template <class Lacks, class IsWanted>
-std::vector<const GroundEdit*> pieces_in(const Cell* cell, const QuadCoord& node, double block_m,
+std::vector<const GroundEdit*> pieces_in(const Cell* cell, const Area& area, double block_m,
                                          const Lacks& lacks, const IsWanted& is_wanted) {
-  const Area area = area_of(node);
   std::vector<const GroundEdit*> pieces;
   each_edit(cell, area, lacks, [&](const GroundEdit& edit) {
     if (is_wanted(edit) && area_of(edit, edit.reach_m(), block_m).touches(area))
@@ -315,13 +314,14 @@ bool GroundEdits::reaches(const QuadCoord& node, double block_m) const {
 
 std::vector<const GroundEdit*> GroundEdits::roads_in(const QuadCoord& node, double block_m) const {
   const auto lacks_roads = [](const Cell& cell, const Area&) { return !cell.summary.has_roads; };
-  return pieces_in(cells_.root(), node, block_m, lacks_roads,
+  return pieces_in(cells_.root(), area_of(node), block_m, lacks_roads,
                    [](const GroundEdit& edit) { return edit.road != nullptr; });
 }
 
-std::vector<const GroundEdit*> GroundEdits::water_in(const QuadCoord& node, double block_m) const {
+std::vector<const GroundEdit*> GroundEdits::water_in(const QuadCoord& node, double block_m,
+                                                     double margin) const {
   const auto is_dry = [](const Cell& cell, const Area&) { return !cell.summary.has_water; };
-  return pieces_in(cells_.root(), node, block_m, is_dry,
+  return pieces_in(cells_.root(), area_of(node, margin), block_m, is_dry,
                    [](const GroundEdit& edit) { return is_water(edit.change); });
 }
 

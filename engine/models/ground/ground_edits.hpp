@@ -179,8 +179,9 @@ class GroundEdits {
   std::vector<const GroundEdit*> roads_in(const QuadCoord& node, double block_m) const;
   // True if there is any river or lake. O(1).
   bool has_water() const { return !empty() && cells_.root()->summary.has_water; }
-  // The same for pieces of rivers and lakes.
-  std::vector<const GroundEdit*> water_in(const QuadCoord& node, double block_m) const;
+  // The same for pieces of rivers and lakes that may reach a node, or `margin` blocks beyond it.
+  std::vector<const GroundEdit*> water_in(const QuadCoord& node, double block_m,
+                                          double margin = 0) const;
   // Returns the surface of the river or lake that owns a place in a block; nothing: none reaches
   // it. O(log n + pieces around the place).
   std::optional<BodySurface> water_over(core::BlockCoord block, glm::dvec2 local_m,

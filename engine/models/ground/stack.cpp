@@ -1,6 +1,7 @@
 #include "engine/models/ground/stack.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace psygen::models {
 namespace {
@@ -50,14 +51,26 @@ std::optional<BodySurface> GroundStack::water_over(core::BlockCoord block, glm::
   const auto b = edits.water_over(block, local_m, block_m);
   if (a && b) return a->owns_before(*b) ? a : b;
   if (a || b || network == nullptr) return a ? a : b;
-  const NetworkWater water = network->water_at({block, {local_m.x, 0, local_m.y}});
-  constexpr std::uint32_t kNetworkSea = 1;  // the sea of the world is no body of its ground
-  if (!(water.depth_m > 0) || water.body == kNetworkSea) return std::nullopt;
+  // The sea of the world is no body of its ground.
+  const auto water = network->inland_water_at({block, {local_m.x, 0, local_m.y}});
+  if (!water) return std::nullopt;
   BodySurface surface;
-  surface.surface_m = double{water.surface_m};
-  surface.flow_m_s = glm::dvec2(water.flow_m_s);
-  surface.body = kFirstNetworkBody | (water.body & ~kFirstNetworkBody);
+  surface.surface_m = double{water->surface_m};
+  surface.flow_m_s = glm::dvec2(water->flow_m_s);
+  surface.body = kFirstNetworkBody | (water->body & ~kFirstNetworkBody);
   return surface;
+}
+
+bool GroundStack::may_have_water(core::BlockCoord block, double margin_m, double block_m) const {
+  const QuadCoord node = QuadCoord::of(block);
+  const double room_m = margin_m + 0.01;  // for rounding
+  const auto has_pieces = [&](const GroundEdits& layer) {
+    return !layer.water_in(node, block_m, room_m / block_m).empty();
+  };
+  if (has_pieces(shapes) || has_pieces(edits)) return true;
+  if (network == nullptr) return false;
+  const auto cells = static_cast<std::int64_t>(std::ceil(room_m / network->frame().cell_m));
+  return network->may_have_water(network->square_of(block, 0).grown(cells));
 }
 
 double GroundStack::error_m(const QuadCoord& node, double spacing_m, double block_m) const {

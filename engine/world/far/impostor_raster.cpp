@@ -9,21 +9,14 @@
 #include <glm/vec4.hpp>
 #include <vector>
 
+#include "engine/world/compass.hpp"
+
 namespace psygen::world {
 namespace {
 
 constexpr std::size_t kSide = core::kImpostorSide;
 constexpr std::size_t kTexels = kSide * kSide;
-constexpr float kDiagonal = 0.70710678F;
-// The direction in which the viewer of each view looks, in x and z.
-constexpr std::array<glm::vec2, 8> kAhead{{{1, 0},
-                                           {kDiagonal, kDiagonal},
-                                           {0, 1},
-                                           {-kDiagonal, kDiagonal},
-                                           {-1, 0},
-                                           {-kDiagonal, -kDiagonal},
-                                           {0, -1},
-                                           {kDiagonal, -kDiagonal}}};
+constexpr auto kAside = static_cast<float>(kDiagonal);
 
 // Typical light relative to a white surface in the sun (render::Light): from the sky above, from
 // the ground below, and from the sun at a typical height, averaged over all sides.
@@ -55,7 +48,7 @@ float usual_light(const glm::vec3& n, glm::vec2 ahead, float ambient, bool leaf)
   float direct = 0;
   for (const glm::vec2 side :
        {glm::vec2(1, 1), glm::vec2(1, -1), glm::vec2(-1, 1), glm::vec2(-1, -1)})
-    direct += 0.25F * direct_light(n, sun_at(ahead, kDiagonal * side), ahead, leaf);
+    direct += 0.25F * direct_light(n, sun_at(ahead, kAside * side), ahead, leaf);
   return of_sky(n, ambient) + kSunLight * direct * (0.35F + 0.65F * ambient);
 }
 
@@ -64,7 +57,7 @@ float usual_light(const glm::vec3& n, glm::vec2 ahead, float ambient, bool leaf)
 // on the position of the sun.
 float leaf_contrast(const glm::vec3& n, const glm::vec3& crown, glm::vec2 ahead) {
   constexpr float kMin = 0.35F;
-  const glm::vec3 sun = sun_at(ahead, {-kDiagonal, -kDiagonal});
+  const glm::vec3 sun = sun_at(ahead, glm::vec2(-kAside));
   return (direct_light(n, sun, ahead, true) + kMin) /
          (direct_light(crown, sun, ahead, true) + kMin);
 }
@@ -208,10 +201,10 @@ void write(const std::vector<glm::vec4>& texels, const glm::vec3& around, float 
 core::ImpostorTexture bake_impostor(std::span<const Corner> corners,
                                     std::span<const std::uint16_t> indices,
                                     const ImpostorFrame& frame, std::uint32_t views) {
-  static_assert(kAhead.size() == core::kImpostorViews);
+  static_assert(kCompass.size() == core::kImpostorViews);
   core::ImpostorTexture picture(core::impostor_bytes());
   for (std::uint32_t k = 0; k < views; ++k) {
-    View view = draw_view(corners, indices, frame, kAhead[k]);
+    View view = draw_view(corners, indices, frame, glm::vec2(kCompass[k]));
     glm::vec4 sum(0.0F);
     for (const glm::vec4& t : view.texels)
       sum += t;

@@ -1,5 +1,5 @@
 // Time of the merged mesh of all models of a node, by world and node level, with tree impostors,
-// and of all impostors of a world.
+// of all impostors of a world, and of the places of the models of a block.
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>
@@ -9,6 +9,7 @@
 #include "engine/world/far/merged_models.hpp"
 #include "engine/world/far/tree_impostors.hpp"
 #include "engine/world/files/world_file.hpp"
+#include "engine/world/placement.hpp"
 #include "tests/bench/synthesis/per_target.hpp"
 #include "tests/source_file.hpp"
 
@@ -69,6 +70,24 @@ BENCHMARK(pictures)
     ->ArgsProduct({{0, 1, 2}, {0, 1}})
     ->ArgNames({"world", "stand-ins"})
     ->Unit(benchmark::kMillisecond);
+
+// Every third block of a square, by land and sea, with the block's ground.
+void places(benchmark::State& state, const char* name) {
+  models::Registry registry = models::make_standard_registry();
+  const auto world = load_world(source_file("game/worlds/") + name + ".toml", registry);
+  if (!world) return state.SkipWithError(world.error().message.c_str());
+  std::vector<Placement> placements;
+  std::int32_t block = 0;
+  for (auto _ : state) {
+    place_models(*world, registry, {block % 24 * 3 - 160, block / 24 % 24 * 3 + 130}, placements);
+    benchmark::DoNotOptimize(placements.data());
+    ++block;
+  }
+}
+BENCHMARK_CAPTURE(places, silver_combe, "silver_combe")
+    ->Unit(benchmark::kMicrosecond)
+    ->Iterations(1152);
+BENCHMARK_CAPTURE(places, watershed, "watershed")->Unit(benchmark::kMicrosecond)->Iterations(1152);
 
 }  // namespace
 }  // namespace psygen::world

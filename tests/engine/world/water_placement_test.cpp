@@ -16,6 +16,9 @@ using testing::registry;
 using testing::river_text;
 
 constexpr const char* kRocks = "[[scatter]]\nmodel = \"rock\"\ncount = 300\n";
+constexpr const char* kFewRocks = "[[scatter]]\nmodel = \"rock\"\ncount = 30\n";
+constexpr const char* kNetwork =
+    "[rivers]\nroot_spacing_m = 1024\nhalvings = 5\nsea_share = 0\nchannel_km2 = 0.01\n";
 
 // Calls visit(position in the world, water there) for all instances of some blocks by the water.
 template <class Visit>
@@ -80,25 +83,60 @@ TEST(WaterPlacement, MaxDepthLetsInstancesStandInShallowWaterOfAnyBody) {
   EXPECT_GT(in_bodies, 20U);
 }
 
+// True if there is water within 6 m of a place.
+bool is_near_water(const World& world, const core::WorldPosition& at) {
+  for (int i = 0; i < 72 * 12; ++i) {
+    core::WorldPosition beside = at;
+    const double angle = (i % 72) * 5 * 3.14159265358979 / 180, away = 0.5 * (i / 72 + 1);
+    beside.local.x += away * std::cos(angle);
+    beside.local.z += away * std::sin(angle);
+    if (!water_at(world, core::normalised(beside, 64)).is_dry()) return true;
+  }
+  return false;
+}
+
 TEST(WaterPlacement, NearWaterKeepsInstancesAtTheShore) {
-  const World world = parsed(river_text() + kRocks + "near_water_m = 6\nmax_depth_m = 0\n");
-  std::size_t far = 0;
-  const std::size_t all =
-      each_instance(world, [&](const core::WorldPosition& at, const auto& here) {
-        ASSERT_TRUE(here.is_dry());
-        bool near = false;
-        for (int i = 0; i < 72 * 12 && !near; ++i) {
-          core::WorldPosition beside = at;
-          const double angle = (i % 72) * 5 * 3.14159265358979 / 180, away = 0.5 * (i / 72 + 1);
-          beside.local.x += away * std::cos(angle);
-          beside.local.z += away * std::sin(angle);
-          near = !water_at(world, core::normalised(beside, 64)).is_dry();
+  for (const std::string& text :
+       {river_text() + kRocks, std::string(kBrookLand) + kNetwork + kFewRocks}) {
+    const World world = parsed(text + "near_water_m = 6\nmax_depth_m = 0\n");
+    std::size_t far = 0;
+    const std::size_t all =
+        each_instance(world, [&](const core::WorldPosition& at, const auto& here) {
+          ASSERT_TRUE(here.is_dry());
+          far += is_near_water(world, at) ? 0 : 1;
+        });
+    EXPECT_LE(far, 3U) << "at the very border of the rounding";
+    const std::uint32_t count = world.scatter[0].count;
+    EXPECT_GT(all, 4 * count);
+    EXPECT_LT(all, 22 * count);
+  }
+}
+
+TEST(WaterPlacement, BlocksAreKnownToBeFarFromRiversAndLakes) {
+  for (const std::string& text : {river_text(), std::string(kBrookLand) + kNetwork}) {
+    const World world = parsed(text);
+    const models::GroundStack& ground = world.shaped.layer->ground;
+    std::size_t without = 0, dry = 0, wet = 0;
+    for (const double margin_m : {0.0, 6.0, 40.0}) {
+      for (std::int32_t i = 0; i < 144; ++i) {
+        const core::BlockCoord block{20 + i % 12, 18 + i / 12};
+        const bool may = ground.may_have_water(block, margin_m, 64);
+        const int steps = static_cast<int>((64 + 2 * margin_m) / 4);
+        bool any = false;
+        for (int k = 0; k <= (steps + 1) * (steps + 1) - 1 && !any; ++k) {
+          const glm::dvec2 local = glm::dvec2(k % (steps + 1), k / (steps + 1)) * 4.0 - margin_m;
+          const auto at = core::normalised({block, {local.x, 0, local.y}}, 64);
+          any = ground.water_over(at.block, {at.local.x, at.local.z}, 64).has_value();
         }
-        far += near ? 0 : 1;
-      });
-  EXPECT_LE(far, 3U) << "at the very border of the rounding";
-  EXPECT_GT(all, 1000U);
-  EXPECT_LT(all, 24U * 300 / 2 + 3000);
+        ASSERT_TRUE(may || !any) << block.x << " " << block.z << " " << margin_m;
+        without += may ? 0 : 1;
+        dry += any ? 0 : 1;
+        wet += any ? 1 : 0;
+      }
+    }
+    EXPECT_GT(wet, 40U);
+    EXPECT_GT(2 * without, dry) << without << " of " << dry;
+  }
 }
 
 TEST(WaterPlacement, KeysReadBackEqual) {
