@@ -12,15 +12,6 @@ namespace {
 using Cell = QuadMap<GroundCell>::Cell;
 using EditPtr = std::shared_ptr<const GroundEdit>;
 
-// Returns the weight of an effect `left` metres before its end, which fades out over `fades`
-// metres: smooth, 0 … 1.
-double faded(double left, double fades) {
-  if (!(left >= 0)) return 0;
-  if (left >= fades) return 1;
-  const double t = left / fades;
-  return t * t * (3 - 2 * t);
-}
-
 // Returns the weight of an edit at a distance from its centre: smooth from 1 to 0.
 double weight_of(const GroundEdit& edit, double dx, double dz) {
   const double left = edit.square ? std::min(edit.radius_m * edit.sides.x - std::abs(dx),

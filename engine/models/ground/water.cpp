@@ -18,15 +18,6 @@ double dot(glm::dvec2 a, glm::dvec2 b) {
   return a.x * b.x + a.y * b.y;
 }
 
-// Returns the weight of an effect `left` metres before its end, which fades out over `fades`
-// metres: smooth, 0 … 1.
-double faded(double left, double fades) {
-  if (!(left > 0)) return 0;
-  if (left >= fades) return 1;
-  const double t = left / fades;
-  return t * t * (3 - 2 * t);
-}
-
 // The nearest point of a segment: its fraction of the length, and the square of its distance.
 // `per_length2` is 1 over the square of the length of `along`.
 struct Foot {

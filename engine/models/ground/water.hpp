@@ -72,6 +72,15 @@ struct LakePiece {
   std::vector<LakeSegment> segments;  // all that may be nearest to a place of the tile
 };
 
+// The weight of an effect `left_m` before its end, which fades out over the last `fades_m`: smooth,
+// 0 … 1. Beyond its end 0, at an end without fading 1.
+constexpr double faded(double left_m, double fades_m) {
+  if (!(left_m >= 0)) return 0;
+  if (left_m >= fades_m) return 1;
+  const double t = left_m / fades_m;
+  return t * t * (3 - 2 * t);
+}
+
 // Sets the last members of a piece from the others, once these are final.
 void seal(RiverPiece& river);
 void seal(LakePiece& lake);
