@@ -69,6 +69,7 @@ struct Lake {
 struct Box {
   std::int32_t x0 = 0, z0 = 0, x1 = 0, z1 = 0;
 
+  // The box with a border of this width.
   Box grown(std::int32_t by) const { return {x0 - by, z0 - by, x1 + by, z1 + by}; }
   bool holds(std::int32_t x, std::int32_t z) const {
     return x >= x0 && x <= x1 && z >= z0 && z <= z1;
