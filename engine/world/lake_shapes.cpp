@@ -202,9 +202,12 @@ class LakeMaker {
     }
     for (const glm::dvec2& at_m : places) {
       const auto water = below_.water_over(at_m);
-      if (!water || water->is_river) continue;
-      return water_error(key(), fmt::format("the lake overlaps another lake near {:.1f}, {:.1f} m",
-                                            at_m.x, at_m.y));
+      if (!water || water->is_river || water->widths > 0.5) continue;
+      const bool of_network = water->body >= models::kFirstNetworkBody;
+      return water_error(
+          key(), fmt::format("the lake overlaps {} near {:.1f}, {:.1f} m",
+                             of_network ? "a river or lake of the river network" : "another lake",
+                             at_m.x, at_m.y));
     }
     return {};
   }

@@ -154,7 +154,7 @@ class Shaper {
   }
 
   std::string text_of(const models::BodySurface& water) const {
-    if (water.body >= kFirstAdded) return "water of the river network";
+    if (water.body >= models::kFirstNetworkBody) return "water of the river network";
     const std::size_t lakes = world_.shaped.lakes.size(), number = water.body - kSea;
     return water.is_river ? fmt::format("river {}", number - lakes)
                           : fmt::format("lake {}", number);

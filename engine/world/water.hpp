@@ -19,7 +19,7 @@ namespace psygen::world {
 
 // The name of a body of water within its world. Lakes of the file follow the sea in their order,
 // then its rivers; bodies that a game adds have larger names (edits/edits.hpp), those of a river
-// network the largest, with two highest bits set.
+// network the largest (models::kFirstNetworkBody).
 using WaterBody = std::uint32_t;
 inline constexpr WaterBody kNoWater = 0, kSea = 1, kFirstAdded = 1U << 31;
 
@@ -54,7 +54,8 @@ bool has_water(const World& world);
 
 // Returns the surface of the water over a place; nothing: no water reaches it at any height of the
 // ground. Ignores the position's own height, and answers outside a bounded world as inside.
-// Evaluates no ground: some nanoseconds.
+// Evaluates no ground of its own: some nanoseconds for a sea, some hundred where rivers and lakes
+// may be, 2 µs in the water of a river network.
 std::optional<WaterSurface> water_surface(const World& world, const core::WorldPosition& at);
 
 // The same without the edits of the world: that of its function.
@@ -66,7 +67,8 @@ std::optional<WaterSurface> sea_surface(const World& world);
 // Returns the water at a place whose ground has this height in metres.
 WaterPoint water_at(const World& world, const core::WorldPosition& at, double ground_m);
 
-// Returns the water at a place, over the ground of models::ground_height_m(): about 1 µs.
+// Returns the water at a place, over the ground of models::ground_height_m(): about 1 µs; 30 µs
+// with a river network and erosion.
 // query::World::water() answers faster, for many places of a block.
 WaterPoint water_at(const World& world, const core::WorldPosition& at);
 

@@ -4,12 +4,6 @@
 #include <cmath>
 
 namespace psygen::models {
-namespace {
-
-// Bodies of a network have other names than those of world files and of games, which begin at 2^31.
-constexpr std::uint32_t kFirstNetworkBody = 0xC0000000U;
-
-}  // namespace
 
 std::uint64_t GroundStack::hash_of(const QuadCoord& node, double margin, double block_m) const {
   return edits.hash_of(node, margin, block_m,

@@ -1,7 +1,7 @@
-// The ground of a world over its noise, as a stack of layers: the erosion and the shapes (stamps
-// and roads) of the world file, then the edits of a running game. Every height passes the whole
-// stack (TerrainShape). A value: copies are O(1) and independent. Any thread may read a value that
-// no thread changes.
+// The ground of a world over its noise, as a stack of layers: of the world file the river network,
+// which takes the place of wide noise, the erosion, and the shapes (stamps, roads, rivers and
+// lakes); then the edits of a running game. Every height passes the whole stack (TerrainShape). A
+// value: copies are O(1) and independent. Any thread may read a value that no thread changes.
 #pragma once
 
 #include <cstdint>
@@ -16,6 +16,10 @@
 #include "engine/models/network/network.hpp"
 
 namespace psygen::models {
+
+// Bodies of a network have names from here on. Those of world files lie below 2^31, and those that
+// games add from there on.
+inline constexpr std::uint32_t kFirstNetworkBody = 0xC0000000U;
 
 struct GroundStack {
   std::shared_ptr<const RiverNetwork> network;  // takes the place of the noise; null: none

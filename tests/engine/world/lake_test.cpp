@@ -163,6 +163,9 @@ TEST(Lake, WrongLakesAreRejectedInOneSentence) {
   const std::string endless = replaced(kBrookLand, "[48, 48]", "[0, 0]");
   EXPECT_THAT(refusal(lake("points_m = [[0, 0], [5000, 0], [0, 5000]]"), endless),
               HasSubstr("the lake is 5000 m wide, but at most 4000 m are allowed"));
+  EXPECT_THAT(refusal(lake("centre_m = [900, 900]\nradius_m = 300"),
+                      std::string(kBrookLand) + "[rivers]\nroot_spacing_m = 1024\nhalvings = 5\n"),
+              HasSubstr("the lake overlaps a river or lake of the river network near"));
 }
 
 TEST(Lake, AHighDamGetsAWarning) {
