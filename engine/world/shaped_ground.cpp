@@ -32,6 +32,16 @@ tl::unexpected<ShapeError> refused(std::string_view key, std::string sentence) {
 
 using Shaped = tl::expected<void, ShapeError>;
 
+// Adds the length of a road or river to that of all. Fails if it is above `max_m`.
+Shaped add_length(std::span<const glm::dvec2> points_m, std::string_view shapes, double max_m,
+                  double& length_m) {
+  length_m += chords_m(points_m);
+  if (length_m <= max_m) return {};
+  return refused("points_m", {core::ErrorCode::kOverBudget,
+                              fmt::format("all {} together are longer than the allowed {:g} m",
+                                          shapes, max_m)});
+}
+
 // Builds the layer of one world, edit by edit.
 class Shaper {
  public:
@@ -104,6 +114,7 @@ class Shaper {
     for (const glm::dvec2& point : road.points_m) {
       if (const auto at = inside(point); !at) return refused("points_m", at.error());
     }
+    if (auto ok = add_length(road.points_m, "roads", kMaxRoadsM, roads_m_); !ok) return ok;
     auto edits = road_edits(world_, layer_, road);
     if (!edits) return refused("points_m", std::move(edits.error()));
     return add(std::move(*edits));
@@ -198,6 +209,7 @@ class Shaper {
 
   const World& world_;
   double block_m_, relief_m_;
+  double roads_m_ = 0;  // total length of all roads so far
   std::vector<std::string> warnings_;
   models::EditLayer layer_;
 };
@@ -217,22 +229,6 @@ Shaped add_all(const Shapes& shapes, std::string_view place, Shaper& shaper) {
   return {};
 }
 
-// Fails if all roads or rivers together are longer than `max_m`.
-template <class Curves>
-Shaped check_lengths(const Curves& curves, std::string_view place, double max_m) {
-  double length_m = 0;
-  for (std::size_t i = 0; i < curves.size(); ++i) {
-    length_m += chords_m(curves[i].points_m);
-    if (length_m > max_m)
-      return wrong_at(
-          place, i,
-          refused("points_m", {core::ErrorCode::kOverBudget,
-                               fmt::format("all {}s together are longer than the allowed {:g} m",
-                                           place, max_m)}));
-  }
-  return {};
-}
-
 // Adds lakes, then rivers, each after those in which it begins or ends.
 Shaped add_water(const World& world, Shaper& shaper) {
   const ShapedGround& shaped = world.shaped;
@@ -241,6 +237,11 @@ Shaped add_water(const World& world, Shaper& shaper) {
     const BodyName name{body, fmt::format("lake {}", i + 1), false};
     if (auto ok = shaper.add(shaped.lakes[i], name, lake_edits); !ok)
       return wrong_at("lake", i, std::move(ok));
+  }
+  double length_m = 0;
+  for (std::size_t i = 0; i < shaped.rivers.size(); ++i) {
+    if (auto ok = add_length(shaped.rivers[i].points_m, "rivers", kMaxRiversM, length_m); !ok)
+      return wrong_at("river", i, std::move(ok));
   }
   const RiverOrder rivers = river_order(world, shaped.rivers);
   if (rivers.order.size() < shaped.rivers.size())
@@ -289,8 +290,6 @@ tl::expected<void, ShapeError> shape_ground(World& world) {
   }
   if (erodes) shaper.add(erosion);
   if (auto ok = add_all(world.shaped.stamps, "stamp", shaper); !ok) return ok;
-  if (auto ok = check_lengths(world.shaped.roads, "road", kMaxRoadsM); !ok) return ok;
-  if (auto ok = check_lengths(world.shaped.rivers, "river", kMaxRiversM); !ok) return ok;
   if (auto ok = add_all(world.shaped.roads, "road", shaper); !ok) return ok;
   if (auto ok = add_water(world, shaper); !ok) return ok;
   if (world.shaped.has_water()) shaper.check_roads();
