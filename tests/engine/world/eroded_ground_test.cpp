@@ -14,17 +14,20 @@
 #include "engine/world/files/world_schema.hpp"
 #include "engine/world/placement.hpp"
 #include "engine/world/world_parts.hpp"
-#include "tests/engine/models/mesh_helpers.hpp"
+#include "tests/engine/world/ground_meshes.hpp"
 #include "tests/engine/world/shaped_worlds.hpp"
 
 namespace psygen::world {
 namespace {
 
+using testing::expect_equal_seams;
+using testing::ground_hashes;
 using ::testing::HasSubstr;
 using testing::height_at;
 using testing::kQuantumM;
 using testing::kShapes;
 using testing::kSmallWorld;
+using testing::mesh_of;
 using testing::parsed;
 using testing::read_shaped_world;
 using testing::registry;
@@ -34,24 +37,13 @@ using testing::shaped_world;
 constexpr const char* kErosion = "[erosion]\nstrength = 0.6\ngully_m = 60\nsediment_m = 40\n";
 constexpr std::size_t kSide = 33;  // vertices of a block of the small world
 
-std::vector<core::TerrainVertex> mesh_of(const World& world, core::BlockCoord node, int level,
-                                         int mesh_level) {
-  return models::test::synthesise(registry()[world.terrain_model],
-                                  terrain_parameters(world, node, level), mesh_level)
-      .vertices<core::TerrainVertex>();
-}
-
 TEST(ErodedGround, AgreesAlongTheSeamsOfNodesOfALevel) {
   const World world = shaped_world(kErosion);
   const World plain = parsed(kSmallWorld);
   for (int level = 0; level < 5; ++level) {
-    const auto here = mesh_of(world, {0, 0}, level, 0), east = mesh_of(world, {1, 0}, level, 0),
-               south = mesh_of(world, {0, 1}, level, 0), before = mesh_of(plain, {0, 0}, level, 0);
+    expect_equal_seams(world, {0, 0}, level);
+    const auto here = mesh_of(world, {0, 0}, level, 0), before = mesh_of(plain, {0, 0}, level, 0);
     std::size_t changed = 0;
-    for (std::size_t k = 0; k < kSide; ++k) {
-      EXPECT_EQ(here[k * kSide + kSide - 1].height, east[k * kSide].height) << level;
-      EXPECT_EQ(here[(kSide - 1) * kSide + k].height, south[k].height) << level;
-    }
     for (std::size_t i = 0; i < kSide * kSide; ++i)
       changed += here[i].height != before[i].height ? 1 : 0;
     EXPECT_GT(changed, kSide * kSide / 2) << level;
@@ -211,20 +203,9 @@ TEST(ErodedGround, HasErrorsAndCostsOfItsDetails) {
   EXPECT_GT(terrain.steps(p, 0), 5 * terrain.steps(terrain_parameters(plain, {0, 0}), 0));
 }
 
-// Worlds must not change: saves, ledgers and ranks compare these hashes.
 TEST(ErodedGround, KeepsItsMeshes) {
-  const World world = shaped_world(std::string(kErosion) + "strata = 0.5\n" + kShapes);
-  const models::ModelType& terrain = registry()[world.terrain_model];
-  std::uint64_t keys = 0, meshes = 0;
-  for (const int level : {0, 1, 2, 4}) {
-    for (const core::BlockCoord node : {core::BlockCoord{0, 0}, {2, 1}, {3, 3}, {-1, 0}}) {
-      const models::Parameters p = terrain_parameters(world, node, level);
-      keys = core::combine(keys, models::parameters_hash(terrain, p));
-      for (const int mesh : {0, 1, 3})
-        meshes = core::combine(
-            meshes, core::hash_bytes(models::test::synthesise(terrain, p, mesh).vertex_bytes));
-    }
-  }
+  const auto [keys, meshes] =
+      ground_hashes(shaped_world(std::string(kErosion) + "strata = 0.5\n" + kShapes));
   EXPECT_EQ(keys, 0xf5cb69d4e55f8cfU) << std::hex << keys;
   EXPECT_EQ(meshes, 0x17214d7d0a096a48U) << std::hex << meshes;
 }

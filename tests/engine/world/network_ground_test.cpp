@@ -13,17 +13,19 @@
 #include "engine/world/edits/edits.hpp"
 #include "engine/world/placement.hpp"
 #include "engine/world/water.hpp"
-#include "tests/engine/models/mesh_helpers.hpp"
+#include "tests/engine/world/ground_meshes.hpp"
 #include "tests/engine/world/network_world.hpp"
 #include "tests/engine/world/shipped.hpp"
 
 namespace psygen::world {
 namespace {
 
+using testing::expect_equal_seams;
 using ::testing::HasSubstr;
 using testing::kNetwork;
 using testing::kNetworkErosion;
 using testing::kNetworkLand;
+using testing::mesh_of;
 using testing::network_text;
 using testing::parsed;
 using testing::registry;
@@ -32,25 +34,12 @@ using testing::replaced;
 constexpr std::size_t kSide = 33;
 constexpr double kBlockM = 32;
 
-std::vector<core::TerrainVertex> mesh_of(const World& world, core::BlockCoord node, int level,
-                                         int mesh_level) {
-  return models::test::synthesise(registry()[world.terrain_model],
-                                  terrain_parameters(world, node, level), mesh_level)
-      .vertices<core::TerrainVertex>();
-}
-
 TEST(NetworkGround, AgreesAlongTheSeamsOfNodesOfALevel) {
   for (const std::string& text : {network_text(), network_text() + kNetworkErosion}) {
     const World world = parsed(text);
     for (int level = 0; level < 6; ++level) {
       for (const core::BlockCoord node : {core::BlockCoord{0, 0}, {17, -9}, {-1000, 300}}) {
-        const auto here = mesh_of(world, node, level, 0),
-                   east = mesh_of(world, {node.x + 1, node.z}, level, 0),
-                   south = mesh_of(world, {node.x, node.z + 1}, level, 0);
-        for (std::size_t k = 0; k < kSide; ++k) {
-          EXPECT_EQ(here[k * kSide + kSide - 1].height, east[k * kSide].height) << level;
-          EXPECT_EQ(here[(kSide - 1) * kSide + k].height, south[k].height) << level;
-        }
+        expect_equal_seams(world, node, level);
       }
     }
   }

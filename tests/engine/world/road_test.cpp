@@ -9,7 +9,7 @@
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/world/placement.hpp"
 #include "engine/world/road_shapes.hpp"
-#include "tests/engine/models/mesh_helpers.hpp"
+#include "tests/engine/world/ground_meshes.hpp"
 #include "tests/engine/world/shaped_worlds.hpp"
 
 namespace psygen::world {
@@ -21,6 +21,7 @@ using testing::kQuantumM;
 using testing::kShapedBlockM;
 using testing::kShapes;
 using testing::kSmallWorld;
+using testing::mesh_of;
 using testing::parsed;
 using testing::read_shaped_world;
 using testing::registry;
@@ -124,11 +125,8 @@ TEST(Road, ClearsItsOwnStripOfModelsOnly) {
 TEST(Road, IsMarkedInTheGround) {
   const World world =
       shaped_world("[[road]]\npoints_m = [[40, 100], [440, 100]]\nwidth_m = 16\nborder_m = 12\n");
-  const models::ModelType& terrain = registry()[world.terrain_model];
   for (int level = 0; level < 3; ++level) {
-    const auto vertices =
-        models::test::synthesise(terrain, terrain_parameters(world, {0, 0}, level), 0)
-            .vertices<core::TerrainVertex>();
+    const auto vertices = mesh_of(world, {0, 0}, level, 0);
     const int step_m = 2 << level;
     for (int k = 0; k < 33; ++k) {
       for (int i = 0; i < 33; ++i) {

@@ -12,16 +12,18 @@
 #include "engine/world/edits/edit_bytes.hpp"
 #include "engine/world/far/merged_models.hpp"
 #include "engine/world/placement.hpp"
-#include "tests/engine/models/mesh_helpers.hpp"
+#include "tests/engine/world/ground_meshes.hpp"
 #include "tests/engine/world/shaped_worlds.hpp"
 
 namespace psygen::world {
 namespace {
 
+using testing::ground_hashes;
 using testing::height_at;
 using testing::kQuantumM;
 using testing::kShapes;
 using testing::kSmallWorld;
+using testing::mesh_of;
 using testing::parsed;
 using testing::read_shaped_world;
 using testing::registry;
@@ -30,12 +32,10 @@ using testing::shaped_world;
 
 TEST(ShapedGround, IsTheSameInEveryNodeThatHasAVertex) {
   const World world = shaped_world(kShapes);
-  const models::ModelType& terrain = registry()[world.terrain_model];
   const World base = parsed(kSmallWorld);
   const auto heights = [&](const World& of, core::BlockCoord node, int level) {
     std::vector<int> values;
-    for (const auto& v : models::test::synthesise(terrain, terrain_parameters(of, node, level), 0)
-                             .vertices<core::TerrainVertex>())
+    for (const core::TerrainVertex& v : mesh_of(of, node, level, 0))
       values.push_back(v.height);
     return values;
   };
@@ -73,23 +73,12 @@ TEST(ShapedGround, WorldsWithoutItHaveTheirOldHashes) {
   EXPECT_EQ(terrain_parameters(small, {6, 3}).hash(), terrain_parameters(world, {6, 3}).hash());
 }
 
-// Hashes of mesh keys and of the meshes themselves: saves, ledgers and ranks compare them.
 TEST(ShapedGround, MeshesAndTheirKeysKeepTheirHashes) {
   World world = shaped_world(kShapes);
   Edits edits;
   ASSERT_TRUE(edits.raise(world, {{2, 1}, {10, 0, 20}}, 30, 5));
   set_edits(world, edits.layer());
-  const models::ModelType& terrain = registry()[world.terrain_model];
-  std::uint64_t keys = 0, meshes = 0;
-  for (const int level : {0, 1, 2, 4}) {
-    for (const core::BlockCoord node : {core::BlockCoord{0, 0}, {2, 1}, {3, 3}, {-1, 0}}) {
-      const models::Parameters p = terrain_parameters(world, node, level);
-      keys = core::combine(keys, models::parameters_hash(terrain, p));
-      for (const int mesh : {0, 1, 3})
-        meshes = core::combine(
-            meshes, core::hash_bytes(models::test::synthesise(terrain, p, mesh).vertex_bytes));
-    }
-  }
+  const auto [keys, meshes] = ground_hashes(world);
   EXPECT_EQ(keys, 0x47fcd45ea2a74ac6U) << std::hex << keys;
   EXPECT_EQ(meshes, 0xfce9c41d0a21abfU) << std::hex << meshes;
 }
