@@ -223,6 +223,23 @@ void fill_lines(const ErosionAxis& axis, std::int64_t cells, std::span<std::int6
 
 }  // namespace
 
+bool ErosionFilter::is_plain() const {
+  return kernel_.octave_count == 0 && passes_ == 0 && kernel_.strata == 0;
+}
+
+float ErosionFilter::plain(float value, const PlainGuide& guide) const {
+  const auto at = [](const ErosionRamp& ramp, float v) {
+    const float t = std::clamp((v - ramp.from) * ramp.per, 0.0F, 1.0F);
+    return t * t * (3 - 2 * t);
+  };
+  const ErosionKernel& k = kernel_;
+  const float band = at(k.lowest, guide.height_m) * (1 - at(k.highest, guide.height_m));
+  const float slope = std::sqrt(guide.slope_x * guide.slope_x + guide.slope_z * guide.slope_z);
+  const float lowered_m = k.carve_m * at(k.full, slope) * band;
+  const float base = value + (guide.worn - value) * (band * k.wear);
+  return std::clamp(base - lowered_m / k.unit_m, 0.0F, k.highest_value);
+}
+
 void ErosionFilter::apply(const ErosionGuide& guide, std::span<const std::int64_t> columns,
                           std::span<const std::int64_t> rows, std::span<float> values,
                           std::size_t stride) const {

@@ -112,6 +112,15 @@ class ErosionFilter {
   void apply(const ErosionGuide& guide, std::span<const std::int64_t> columns,
              std::span<const std::int64_t> rows, std::span<float> values, std::size_t stride) const;
 
+  // True if the detail shows no gully, no sediment and no layer of rock. Then erosion lowers steep
+  // ground and wears it, which needs only the guide's height and slope at each place.
+  bool is_plain() const;
+  // Erodes a value at such a detail. `worn` is the guide there, in the units of values.
+  struct PlainGuide {
+    float worn = 0, height_m = 0, slope_x = 0, slope_z = 0;
+  };
+  float plain(float value, const PlainGuide& guide) const;
+
   // Largest changes of a height in metres, where `wear` has mixed it with the guide; min_m <= 0.
   double min_m() const { return min_m_; }
   double max_m() const { return max_m_; }

@@ -175,8 +175,13 @@ void TerrainShape::evaluate_network(std::span<const std::int64_t> columns,
     fine[i] = std::clamp(base[i] + detail_m, 0.0F, relief_m) / metres;
   }
   if (const std::optional<ErosionFilter> erosion = filter(detail)) {
-    std::copy(fine.begin(), fine.end(), other.begin());
-    erosion->apply(NetworkGuide(network, metres, detail), columns, rows, other, width);
+    if (erosion->is_plain()) {
+      for (std::size_t i = 0; i < count; ++i)
+        other[i] = erosion->plain(fine[i], {base[i] / metres, base[i], slope_x[i], slope_z[i]});
+    } else {
+      std::copy(fine.begin(), fine.end(), other.begin());
+      erosion->apply(NetworkGuide(network, metres, detail), columns, rows, other, width);
+    }
     for (std::size_t i = 0; i < count; ++i)
       fine[i] += (other[i] - fine[i]) * clear[i];
   }
@@ -197,7 +202,7 @@ void TerrainShape::each_patch(LatticeSpan x, LatticeSpan z, GroundDetail detail,
   if (stack == nullptr || stack->network == nullptr) return;
   stack->network->each_tile({x.first, x.last}, {z.first, z.last}, detail, visit);
   const std::optional<ErosionFilter> erosion = filter(detail);
-  if (!erosion) return;
+  if (!erosion || erosion->is_plain()) return;
   const auto wide = static_cast<std::int64_t>(erosion->guide_margin_cells());
   for (const double narrowest : {erosion->narrowest_cells(), erosion->lines_show_cells()})
     stack->network->each_tile({x.first - wide, x.last + wide}, {z.first - wide, z.last + wide},
@@ -221,7 +226,7 @@ double TerrainShape::layer_work(LatticeSpan x, LatticeSpan z, double heights,
             noise.work(side, side, spacing,
                        std::min(octaves(detail), octaves_of_nodes(noise, *network)));
   const std::optional<ErosionFilter> erosion = filter(detail);
-  if (!erosion) return work;
+  if (!erosion || (network != nullptr && erosion->is_plain())) return work;
   work += erosion->work(side, side, spacing);
   const double points = erosion->guide_points(side, side, spacing);
   if (network != nullptr)
