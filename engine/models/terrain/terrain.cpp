@@ -22,23 +22,31 @@
 namespace psygen::models {
 namespace {
 
-// Sample positions along one axis: every vertex of the level, and its neighbours one cell away.
-// Vertex k is sample vertex(k). Samples are grid positions −1 … size.
+// Distance in cells over which normals take slopes, to both sides of a vertex. Where heights are
+// costly, coarse nodes take them over the vertices of level 1, with a ninth of the samples.
+int normal_reach(const TerrainGrid& grid, const TerrainShape& shape) {
+  const bool costly = shape.stack != nullptr && shape.stack->has_fixed_part();
+  if (!costly || shape.node_level == 0 || grid.stride == 1) return 1;
+  return terrain_strides(grid.size)[1];
+}
+
+// Sample positions along one axis: every vertex of the level, and its neighbours `reach` cells
+// away. Vertex k is sample vertex(k). Samples are grid positions −reach … size − 1 + reach.
 struct SampleAxis {
   std::array<std::int64_t, RidgedNoise::kMaxAxis> world;
   std::size_t count = 0;
   std::size_t step;  // samples from one vertex to the next
 
-  SampleAxis(const TerrainGrid& grid, const TerrainShape& shape, std::int64_t block)
-      : step(static_cast<std::size_t>(std::min(grid.stride, 3))) {
+  SampleAxis(const TerrainGrid& grid, const TerrainShape& shape, std::int64_t block, int reach)
+      : step(static_cast<std::size_t>(std::min(grid.stride / reach, 3))) {
     const auto add = [&](int i) { world[count++] = shape.world_of(block, i); };
-    if (grid.stride <= 3) {
-      for (int i = -1; i <= grid.size; ++i)
+    if (grid.stride <= 3 * reach) {
+      for (int i = -reach; i < grid.size + reach; i += reach)
         add(i);
       return;
     }
     for (int i = 0; i < grid.size; i += grid.stride) {
-      for (const int neighbour : {-1, 0, 1})
+      for (const int neighbour : {-reach, 0, reach})
         add(i + neighbour);
     }
   }
@@ -144,8 +152,8 @@ double TerrainType::complexity(const Parameters& p, int level) const {
 }
 
 // Counts the samples of a mesh, and those of the parent's.
-double sample_count(const TerrainGrid& grid, int level) {
-  const double side = grid.stride <= 3 ? grid.size + 2 : 3 * grid.n;
+double sample_count(const TerrainGrid& grid, int level, int reach) {
+  const double side = grid.stride <= 3 * reach ? (grid.size - 1) / reach + 3 : 3 * grid.n;
   const double parent = level == 1 ? grid.n / 2 + 1 : 0;
   return side * side + parent * parent;
 }
@@ -157,21 +165,22 @@ double TerrainType::steps(const Parameters& p, int level) const {
   const TerrainShape shape(p);
   const TerrainGrid grid = grid_of(p, level);
   const auto n = static_cast<std::size_t>(grid.n);
-  const double cell = std::ldexp(1.0, shape.node_level);
+  const int reach = normal_reach(grid, shape);
+  const double cell = std::ldexp(1.0, shape.node_level), near = cell * reach;
   double work = 0;
-  if (grid.stride <= 3) {
-    const auto samples = static_cast<std::size_t>(grid.size) + 2;
-    work = shape.noise.work(samples, samples, cell);
+  if (grid.stride <= 3 * reach) {
+    const auto samples = static_cast<std::size_t>((grid.size - 1) / reach) + 3;
+    work = shape.noise.work(samples, samples, near);
   } else {  // groups of a vertex and its two neighbours, with gaps between the groups
-    work = (2 * shape.noise.work(3 * n, 3 * n, cell) +
-            shape.noise.work(3 * n, 3 * n, cell * (grid.stride - 2))) /
+    work = (2 * shape.noise.work(3 * n, 3 * n, near) +
+            shape.noise.work(3 * n, 3 * n, cell * (grid.stride - 2 * reach))) /
            3;
   }
   if (level == 1) work += shape.noise.work(n / 2 + 1, n / 2 + 1, 2 * grid.stride * cell);
   const std::int64_t x = p.integer(kTerrainBlockX), z = p.integer(kTerrainBlockZ);
   work += shape.layer_work({shape.world_of(x, -1), shape.world_of(x, grid.size)},
                            {shape.world_of(z, -1), shape.world_of(z, grid.size)},
-                           sample_count(grid, level), shape.detail());
+                           sample_count(grid, level, reach), shape.detail());
   return work + TerrainLight::work(shape,
                                    {p.real(kTerrainSunAzimuth), p.real(kTerrainSunElevation)}, x, z,
                                    light_grid_of(level));
@@ -281,8 +290,9 @@ core::Bounds TerrainType::synthesise(const Parameters& p, int level, const MeshV
   PSYGEN_CHECK(out.vertices.size() ==
                    (grid.surface_vertices() + grid.border_vertices()) * sizeof(core::TerrainVertex),
                "the destination has exactly the size of the mesh");
-  const SampleAxis columns(grid, shape, p.integer(kTerrainBlockX));
-  const SampleAxis rows(grid, shape, p.integer(kTerrainBlockZ));
+  const int reach = normal_reach(grid, shape);
+  const SampleAxis columns(grid, shape, p.integer(kTerrainBlockX), reach);
+  const SampleAxis rows(grid, shape, p.integer(kTerrainBlockZ), reach);
   constexpr std::size_t kMaxStride = RidgedNoise::kMaxAxis;
   const Scratch<std::array<float, kMaxStride*(kMaxTerrainSize + 2) + 16>> scratch;
   const std::span<float> noise = *scratch;
@@ -307,7 +317,7 @@ core::Bounds TerrainType::synthesise(const Parameters& p, int level, const MeshV
            parent ? parent->view : CoarseSamples{first, stride, columns.step * ratio, ratio, 0, 0},
        .light = light.samples(),
        .quantum = shape.quantum,
-       .slope_scale = shape.metres / static_cast<float>(2 * shape.cell_m)},
+       .slope_scale = shape.metres / static_cast<float>(2 * reach * shape.cell_m)},
       out.vertices.data());
   const auto n = static_cast<std::size_t>(grid.n);
   const auto height_m = [&](std::size_t vertex) {
