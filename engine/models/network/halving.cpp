@@ -68,7 +68,7 @@ double freedom(const Edge& e, const Node& c, double shift, double spacing) {
 std::uint32_t name_of(const Node& sill) {
   const std::uint64_t hash =
       core::combine(static_cast<std::uint64_t>(sill.x), static_cast<std::uint64_t>(sill.z));
-  return static_cast<std::uint32_t>(hash) | 1U;
+  return lake_name(hash);
 }
 
 // Makes one middle. `level` is its level.
@@ -319,11 +319,9 @@ Rect coarse_for(const Rect& w) {
   return {((w.i0 - 3) >> 1) - 1, ((w.j0 - 3) >> 1) - 1, ((w.i1 + 3) >> 1) + 3,
           ((w.j1 + 3) >> 1) + 3};
 }
-Rect fine_for(const Rect& r) {
-  return {2 * r.i0 + 5, 2 * r.j0 + 5, 2 * r.i1 - 8, 2 * r.j1 - 8};
-}
 
 NodePatch halve(const Scale& scale, LandFields& fields, const NodePatch& coarse, const Rect& want) {
+  PSYGEN_ASSERT(coarse.rect.holds(coarse_for(want)), "the coarse nodes around the fine ones exist");
   NodePatch f(coarse.level + 1, want.grown(3));
   for (std::int64_t j = f.rect.j0; j < f.rect.j1; ++j) {
     for (std::int64_t i = f.rect.i0; i < f.rect.i1; ++i) {

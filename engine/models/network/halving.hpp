@@ -12,10 +12,8 @@ namespace psygen::models::network {
 // Largest displacement of a middle and largest length of an edge, in spacings of its level.
 constexpr double kLargestShift = 0.42, kLongestEdge = 2.0;
 
-// The nodes of a level that fine nodes in `fine` depend on, and the largest rectangle of fine nodes
-// that `coarse` determines.
+// The nodes of a level that nodes of the level below it in `fine` depend on.
 Rect coarse_for(const Rect& fine);
-Rect fine_for(const Rect& coarse);
 
 // Makes the nodes `want` of the level below `coarse`, which must cover coarse_for(want).
 NodePatch halve(const Scale& scale, LandFields& fields, const NodePatch& coarse, const Rect& want);

@@ -318,12 +318,16 @@ namespace {
 HWY_EXPORT(base_on_target);
 HWY_EXPORT(carve_on_target);
 
+// The box that spots and curves must reach to change samples in a box.
+Box read_for(const Box& box, bool guided) {
+  return box.grown(guided ? kGuideReach : 0);
+}
+
 // Chooses what reaches the samples, in the patch's order. More than that would change no bit.
 Chosen choose(const Patch& patch, const Samples& samples) {
   Chosen chosen;
-  const Box box =
-      Box{samples.x.front(), samples.z.front(), samples.x.back(), samples.z.back()}.grown(
-          samples.guided ? kGuideReach : 0);
+  const Box box = read_for(
+      {samples.x.front(), samples.z.front(), samples.x.back(), samples.z.back()}, samples.guided);
   patch.each_spot(box, [&](const Spot& s) {
     chosen.spots.push_back(&s);
     if (s.lake >= 0) chosen.lakes.push_back(s.lake);
@@ -339,24 +343,21 @@ Chosen choose(const Patch& patch, const Samples& samples) {
 void base_rows(const Patch& patch, const Samples& samples, const BaseRows& rows) {
   HWY_DYNAMIC_DISPATCH(base_on_target)(patch, samples, choose(patch, samples), rows);
 }
-HeightRange range_of(const Patch& patch, const Samples& samples) {
-  const Chosen chosen = choose(patch, samples);
+HeightRange range_of(const Patch& patch, const Box& box, bool guided) {
   HeightRange range{1e30F, -1e30F};
-  for (const Spot* s : chosen.spots) {
-    range.lowest_m = std::min(range.lowest_m, s->height_m - s->depth_m);
-    range.highest_m = std::max(range.highest_m, s->height_m);
-  }
-  for (const Curve* c : chosen.curves) {
-    const float deep = channel_depth_m(std::max(c->width0_m, c->width1_m));
-    range.lowest_m = std::min(range.lowest_m, c->height_m[2] - deep);
-    range.highest_m = std::max(range.highest_m, c->height_m[0] + 0.3F);
-  }
+  const Box read = read_for(box, guided);
+  patch.each_spot(read, [&](const Spot& s) {
+    range.lowest_m = std::min(range.lowest_m, s.height_m - s.depth_m);
+    range.highest_m = std::max(range.highest_m, s.height_m);
+  });
+  patch.each_curve(read, [&](const Curve& c) {
+    const float deep = channel_depth_m(std::max(c.width0_m, c.width1_m));
+    range.lowest_m = std::min(range.lowest_m, c.height_m[2] - deep);
+    range.highest_m = std::max(range.highest_m, c.height_m[0] + 0.3F);
+  });
   // Cubic interpolation leaves the range of its points by up to a quarter.
-  if (samples.guided) {
-    const float more = 0.25F * (range.highest_m - range.lowest_m);
-    return {range.lowest_m - more, range.highest_m + more};
-  }
-  return range;
+  const float more = guided ? 0.25F * (range.highest_m - range.lowest_m) : 0;
+  return {range.lowest_m - more, range.highest_m + more};
 }
 void carve_rows(const Patch& patch, const Samples& samples, const CarvedRows& rows) {
   HWY_DYNAMIC_DISPATCH(carve_on_target)(patch, samples, choose(patch, samples), rows);

@@ -45,8 +45,8 @@ void base_rows(const Patch& patch, const Samples& samples, const BaseRows& rows)
 struct HeightRange {
   float lowest_m = 0, highest_m = 0;
 };
-// Bounds of the ground at the samples and between them.
-HeightRange range_of(const Patch& patch, const Samples& samples);
+// Bounds of the ground of guided or exact samples in a box.
+HeightRange range_of(const Patch& patch, const Box& box, bool guided);
 // Cuts channels and lakes.
 void carve_rows(const Patch& patch, const Samples& samples, const CarvedRows& rows);
 

@@ -42,8 +42,17 @@ struct Rect {
   }
   constexpr std::int64_t width() const { return i1 - i0; }
   constexpr std::int64_t height() const { return j1 - j0; }
+  constexpr bool holds(const Rect& r) const {
+    return r.i0 >= i0 && r.j0 >= j0 && r.i1 <= i1 && r.j1 <= j1;
+  }
   friend constexpr bool operator==(const Rect&, const Rect&) = default;
 };
+
+// Names of bodies of water: that of the sea, and those of lakes by random bits.
+constexpr std::uint32_t kSeaBody = 1;
+constexpr std::uint32_t lake_name(std::uint64_t bits) {
+  return std::max(static_cast<std::uint32_t>(bits) | 1U, kSeaBody + 2);
+}
 
 enum class Kind : std::uint8_t { kLand, kSea, kLake };
 // A source is a node that lay off the rivers when it was made. The first kind may take in the

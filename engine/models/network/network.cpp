@@ -346,15 +346,12 @@ network::HeightRange RiverNetwork::bounds() const {
   return {0, static_cast<float>(scale_.frame.relief_m)};
 }
 
-network::HeightRange RiverNetwork::bounds(const Lattice& at, GroundDetail detail) const {
+network::HeightRange RiverNetwork::bounds(const Cells& cells, GroundDetail detail) const {
   network::HeightRange range{1e30F, -1e30F};
-  each_part(
-      at, detail,
-      [&](const network::Patch& patch, const network::Samples& samples, std::size_t, std::size_t) {
-        const network::HeightRange part = network::range_of(patch, samples);
-        range = {std::min(range.lowest_m, part.lowest_m),
-                 std::max(range.highest_m, part.highest_m)};
-      });
+  for (const auto& [patch, box] : parts_of(cells, detail)) {
+    const network::HeightRange part = network::range_of(*patch, box.grown(1), is_fine(detail));
+    range = {std::min(range.lowest_m, part.lowest_m), std::max(range.highest_m, part.highest_m)};
+  }
   return range;
 }
 

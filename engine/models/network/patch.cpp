@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "engine/models/kit/exact_math.hpp"
 
@@ -62,24 +61,18 @@ class Builder {
   float water_m(const Node& n) const { return height_m(scale_, std::max(n.height, 0)); }
   float width_m(std::uint32_t area) const { return channel_width_m(scale_.km2(area), max_m_); }
   Lake lake_of(const Node& n) const { return {water_m(n), n.lake}; }
-  static std::tuple<float, std::uint32_t> key(const Lake& l) { return {l.level_m, l.body}; }
 
   void name_lakes() {
     std::vector<Lake>& lakes = patch_.lakes;
     for (const Node& n : n_.nodes) {
       if (in_lake(n)) lakes.push_back(lake_of(n));
     }
-    const auto less = [](const Lake& a, const Lake& b) { return key(a) < key(b); };
-    const auto same = [](const Lake& a, const Lake& b) { return key(a) == key(b); };
-    std::sort(lakes.begin(), lakes.end(), less);
-    lakes.erase(std::unique(lakes.begin(), lakes.end(), same), lakes.end());
+    std::ranges::sort(lakes);
+    lakes.erase(std::unique(lakes.begin(), lakes.end()), lakes.end());
   }
   std::int32_t index_of(const Node& n) const {
-    const Lake lake = lake_of(n);
-    const auto less = [](const Lake& a, const Lake& b) { return key(a) < key(b); };
-    return static_cast<std::int32_t>(
-        std::lower_bound(patch_.lakes.begin(), patch_.lakes.end(), lake, less) -
-        patch_.lakes.begin());
+    return static_cast<std::int32_t>(std::ranges::lower_bound(patch_.lakes, lake_of(n)) -
+                                     patch_.lakes.begin());
   }
   std::int32_t from_origin_x(const Node& n) const {
     return static_cast<std::int32_t>(n.x - patch_.x);
@@ -123,7 +116,7 @@ class Builder {
   }
   void add_curves(std::int64_t i, std::int64_t j) {
     const Node& v = n_.at(i, j);
-    Way2 out{};
+    Outlet out;
     if (v.receiver != kSink) {
       const Node& down = n_.beside(i, j, v.receiver);
       out = {half(v, down), middle_m(v, down)};
@@ -195,10 +188,12 @@ class Builder {
   }
 
   using Vector = std::array<double, 2>;  // metres from a node
-  struct Way2 {
+  // The place and the water where a node's channels end.
+  struct Outlet {
     Vector place{};
     float height_m = 0;
   };
+  // The control points of a curve, and its water there.
   struct Path {
     Vector from{}, control{}, to{};
     float from_m, control_m, to_m;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <compare>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -57,12 +58,11 @@ struct Curve {
   bool head = false;  // a spring: the bed begins here
 };
 
-// The sea among the names of bodies of water.
-constexpr std::uint32_t kSeaBody = 1;
 // A lake: all its spots share the level.
 struct Lake {
   float level_m = 0;
   std::uint32_t body = 0;
+  friend auto operator<=>(const Lake&, const Lake&) = default;
 };
 
 // An axis-aligned rectangle of units from a patch's origin, both ends included.

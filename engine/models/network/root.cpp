@@ -315,13 +315,13 @@ const Node& RootNodes::node(std::int64_t i, std::int64_t j) {
   } else if (w.receiver == kSink) {
     n.kind = Kind::kLake;
     n.sill = true;
-    n.lake = static_cast<std::uint32_t>(bits) | 1U;
+    n.lake = lake_name(bits);
     n.area = area(i, j) << finest;
     n.height = static_cast<std::int32_t>((60 + 120 * random.first) * metres);
     n.depth = static_cast<std::int32_t>(60 * metres);
   } else {
     const auto d = static_cast<std::size_t>(w.receiver);
-    const Node down = node(i + kStepI[d], j + kStepJ[d]);
+    const Node& down = node(i + kStepI[d], j + kStepJ[d]);
     const std::uint32_t nodes = area(i, j);
     const double m = 0.5 * (static_cast<double>(n.mountain) + static_cast<double>(down.mountain));
     const double slope = scale_.settings.steepness * (0.0015 + 0.022 * m) *

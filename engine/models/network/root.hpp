@@ -78,7 +78,8 @@ class RootNodes {
   using TileSource = std::function<std::shared_ptr<const RootTile>(const TileKey&)>;
   RootNodes(const Scale& scale, TileSource tiles);
 
-  // A node; the reference holds until the next call.
+  // A node; the reference stays valid. Calls nest as deep as a path is long: 434 nodes at most, 30
+  // usually.
   const Node& node(std::int64_t i, std::int64_t j);
   LandFields& fields() { return fields_; }
 

@@ -440,7 +440,8 @@ TEST(RiverNetwork, GroundStaysWithinItsBounds) {
       const auto x = range(place[0], 1 << std::max(0, level - 1), 64);
       const auto z = range(place[1], 1 << std::max(0, level - 1), 64);
       const Result r = evaluate(*network, x, z, {level});
-      const network::HeightRange range = network->bounds({x, z}, {level});
+      const std::int64_t side = x.back() - x.front();
+      const network::HeightRange range = network->bounds({place[0], place[1], side}, {level});
       const auto [low, high] = std::minmax_element(r.height.begin(), r.height.end());
       ASSERT_GE(*low, range.lowest_m);
       ASSERT_LE(*high, range.highest_m);
