@@ -42,8 +42,9 @@ class NetworkSurface {
       };
       for (const Curve& curve : patch->curves) {
         if (!box.holds(curve.x, curve.z)) continue;
-        add(curve, {from_corner_m(patch->x + curve.x, square_.x),
-                    from_corner_m(patch->z + curve.z, square_.z)});
+        add(*patch, curve,
+            {from_corner_m(patch->x + curve.x, square_.x),
+             from_corner_m(patch->z + curve.z, square_.z)});
       }
     }
   }
@@ -114,12 +115,12 @@ class NetworkSurface {
   }
 
   // `origin_m`: the curve's node, from the corner of the node of the quadtree.
-  void add(const Curve& curve, glm::dvec2 origin_m) {
+  void add(const network::Patch& patch, const Curve& curve, glm::dvec2 origin_m) {
     if (!node_.shows(double{curve.width1_m}) || to_.is_full()) return;
     std::uint32_t before = 0;
     for (std::size_t i = 0; i <= curve.chords; ++i) {
       const std::uint32_t row = to_.add(section(curve, i, origin_m), node_.level);
-      if (i > 0 && !is_still(curve, i)) to_.join(before, row, node_.level);
+      if (i > 0 && !is_still(patch, curve, i)) to_.join(before, row, node_.level);
       before = row;
     }
   }
@@ -129,11 +130,16 @@ class NetworkSurface {
     return double{network::level_m(curve, static_cast<float>(i) / Curve::kChords)};
   }
   // True for a chord whose ends both lie on a lake, or on the sea.
-  bool is_still(const Curve& curve, std::size_t i) const {
+  bool is_still(const network::Patch& patch, const Curve& curve, std::size_t i) const {
     constexpr double kEqualM = 0.01;
     const double from_m = level_m(curve, i - 1), to_m = level_m(curve, i);
-    return from_m <= to_m + kEqualM &&
-           (to_m < network_.frame().sea_level_m + kEqualM || is_level(to_m, kEqualM));
+    if (from_m > to_m + kEqualM) return false;
+    if (to_m < network_.frame().sea_level_m + kEqualM) return true;
+    const auto at = [&](std::int32_t node, float away_m) {
+      return node + static_cast<std::int32_t>(away_m / patch.unit_m);
+    };
+    const std::int32_t x = at(curve.x, curve.px[i]), z = at(curve.z, curve.pz[i]);
+    return is_level(to_m, kEqualM) && patch.may_have_lake({x, z, x, z});
   }
 
   CrossSection section(const Curve& curve, std::size_t i, glm::dvec2 origin_m) const {
