@@ -55,8 +55,9 @@ class NetworkSurface {
     });
     if (!any) return;
     std::array<std::int64_t, kLakeSide> xs, zs;
+    constexpr std::int64_t kSteps = kLakeSide - 1;
     for (std::size_t i = 0; i < kLakeSide; ++i) {
-      const std::int64_t away = square_.side * static_cast<std::int64_t>(i) / (kLakeSide - 1);
+      const std::int64_t away = square_.side * static_cast<std::int64_t>(i) / kSteps;
       xs[i] = square_.x + away;
       zs[i] = square_.z + away;
     }

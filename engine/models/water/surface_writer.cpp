@@ -28,7 +28,7 @@ core::WaterVertex packed(const SurfacePoint& point, const core::Bounds& box) {
     return std::round(std::clamp(value, -1.0, 1.0) * largest);
   };
   const auto unorm8 = [](double value) {
-    return static_cast<std::uint8_t>(std::clamp(value, 0.0, 1.0) * 255 + 0.5);
+    return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 1.0) * 255));
   };
   core::WaterVertex v;
   for (int i = 0; i < 3; ++i)

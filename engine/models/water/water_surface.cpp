@@ -42,7 +42,7 @@ const SurfaceWriter& surface_of(const Parameters& p) {
   static thread_local std::optional<Kept> last;
   if (!last || last->parameters != p) {
     last.reset();
-    last.emplace(p, made(p));
+    last = Kept{p, made(p)};
   }
   return last->surface;
 }
