@@ -53,6 +53,7 @@ int count_of_levels(const world::World& world, const SceneSettings& settings) {
 }
 
 constexpr int kNodes = 16;           // measured nodes of each level
+constexpr int kNodesOfNetworks = 6;  // the same in worlds where each costs a millisecond or more
 constexpr double kUsualPlaces = 95;  // percent
 
 // Adds the distance of each vertex from the next coarser surface, in units of 1/65535 of the height
@@ -267,7 +268,8 @@ double measured_ground_error_m(const SampleBlocks& blocks, const models::Registr
   std::vector<std::byte> vertices;
   std::vector<std::uint16_t> indices;
   std::vector<std::uint16_t> distances;
-  for (int i = 0; i < kNodes; ++i) {
+  const int count = world.shaped.network ? kNodesOfNetworks : kNodes;
+  for (int i = 0; i < count; ++i) {
     const visibility::NodeCoord node =
         visibility::node_of(blocks.next(random, static_cast<std::uint32_t>(node_level)),
                             static_cast<std::uint8_t>(node_level));
