@@ -8,6 +8,7 @@
 #include "engine/core/rounding.hpp"
 #include "engine/core/value_cache.hpp"
 #include "engine/core/vertex_layout.hpp"
+#include "engine/models/edits.hpp"
 #include "engine/models/kit/scratch.hpp"
 
 namespace psygen::models {
@@ -165,16 +166,29 @@ void sample_ground(const Parameters& terrain, core::BlockCoord block,
     ground[i] = all.at(local_xz[i]);
 }
 
+namespace {
+
+// Where heights are kept, a place in the block costs no more than all of the block, once.
+BlockGround ground_at(const Parameters& terrain, core::BlockCoord block, glm::dvec2 local_m) {
+  const bool kept = terrain.edits() != nullptr && terrain.edits()->ground.heights != nullptr;
+  const double block_m = terrain_block_size_m(terrain);
+  const bool inside =
+      local_m.x >= 0 && local_m.y >= 0 && local_m.x < block_m && local_m.y < block_m;
+  return {terrain, block, kept && inside ? std::size_t{kMaxTerrainSize} * kMaxTerrainSize : 1};
+}
+
+}  // namespace
+
 double ground_height_m(const Parameters& terrain, core::BlockCoord block, double local_x,
                        double local_z) {
   const core::RoundToNearest rounding;
-  return BlockGround(terrain, block, 1).at({local_x, local_z}).height_m;
+  return ground_at(terrain, block, {local_x, local_z}).at({local_x, local_z}).height_m;
 }
 
 glm::vec3 ground_normal(const Parameters& terrain, core::BlockCoord block, double local_x,
                         double local_z) {
   const core::RoundToNearest rounding;
-  return BlockGround(terrain, block, 1).at({local_x, local_z}).normal;
+  return ground_at(terrain, block, {local_x, local_z}).at({local_x, local_z}).normal;
 }
 
 }  // namespace psygen::models
