@@ -283,7 +283,8 @@ void ErosionFilter::erode(Lattices& m, const ErosionGuide& guide,
                    .passes = passes_,
                    .spacing = line,
                    .spacing_m = static_cast<float>(static_cast<double>(line_cells_) * cell_m_)};
-  if (kernel_.wear > 0) {
+  call.wears_to_guide = guide.follows_from_lines();
+  if (kernel_.wear > 0 && !call.wears_to_guide) {
     guide.heights(columns, rows, narrowest_cells_, m.worn, kMaxErosionAxis);
     call.worn = m.worn.data();
     call.worn_stride = kMaxErosionAxis;

@@ -90,6 +90,9 @@ class ErosionGuide {
   virtual void heights(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows,
                        double narrowest_cells, std::span<float> values,
                        std::size_t stride) const = 0;
+  // True if the guide is so smooth that its value between lines follows from them. Then heights()
+  // is asked for lines alone.
+  virtual bool follows_from_lines() const { return false; }
 };
 
 // The lattice and the values that an erosion acts on.

@@ -567,7 +567,8 @@ class RowEroder {
     for (std::size_t o = 0; o < k_.octave_count; ++o)
       gullies.add(k_, o, site, stripes(o, row, i));
     Float change = mad(hn::Sub(gullies.height, set(k_.carve_m)), site.deep, site.fill);
-    const Float base = mad(hn::Mul(site.band, set(k_.wear)), hn::Sub(worn, before), before);
+    const Float wide = call_.wears_to_guide ? hn::Mul(g.height, set(1 / k_.unit_m)) : worn;
+    const Float base = mad(hn::Mul(site.band, set(k_.wear)), hn::Sub(wide, before), before);
     if (k_.strata > 0) {
       const Float slope = hn::Sqrt(mad(gullies.x, gullies.x, square(gullies.z)));
       const Float turns = hn::Mul(mad(base, set(k_.unit_m), change), set(k_.strata_turns));

@@ -81,6 +81,7 @@ struct ErosionCall {
   float spacing_m = 0;
   const float* worn = nullptr;  // values without narrow octaves; null: as `values`
   std::size_t worn_stride = 0;
+  bool wears_to_guide = false;  // the guide takes the place of `worn`
 };
 
 // Erodes values[r · stride + c], on the best instruction set of this CPU.

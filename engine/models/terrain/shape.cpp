@@ -2,6 +2,8 @@
 #include "engine/models/terrain/shape.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 
 #include "engine/models/edits.hpp"
@@ -13,6 +15,8 @@
 
 namespace psygen::models {
 namespace {
+
+using network::floor_div;
 
 RidgedSettings settings_of(const Parameters& p) {
   return {.seed = static_cast<std::uint64_t>(p.integer(kTerrainSeed)),
@@ -68,25 +72,95 @@ GroundDetail guide_detail(GroundDetail of_ground, double narrowest_cells) {
   return {.level = std::max(of_ground.level, detail_of_width(narrowest_cells).level)};
 }
 
-// The land of a river network before its channels, in units of the noise.
+// The land of a river network before its channels, in units of the noise. Neighbouring blocks ask
+// for the same lines, so squares of them are kept.
 class NetworkGuide final : public ErosionGuide {
  public:
-  NetworkGuide(const RiverNetwork& network, float unit_m, GroundDetail detail)
-      : network_(network), unit_m_(unit_m), detail_(detail) {}
+  // `kept` may be null.
+  NetworkGuide(const RiverNetwork& network, float unit_m, GroundDetail detail,
+               core::ValueCache* kept)
+      : network_(network), unit_m_(unit_m), detail_(detail), kept_(kept) {}
+  bool follows_from_lines() const override { return true; }
   void heights(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows,
                double narrowest_cells, std::span<float> values, std::size_t stride) const override {
-    network_.base({columns, rows}, guide_detail(detail_, narrowest_cells),
-                  {.height_m = values.data(), .stride = stride});
+    const GroundDetail detail = guide_detail(detail_, narrowest_cells);
+    if (kept_ == nullptr || columns.size() < 2) {
+      evaluate(columns, rows, detail, values, stride);
+      return;
+    }
+    const std::int64_t step = columns[1] - columns[0];
+    const Squares x(columns, step), z(rows, step);
+    for (std::int64_t j = z.first; j <= z.last; ++j) {
+      for (std::int64_t i = x.first; i <= x.last; ++i)
+        copy(*square(i, j, step, detail), x.part(i), z.part(j), values, stride);
+    }
+  }
+
+ private:
+  static constexpr std::int64_t kSide = 32;  // lines of a square
+  struct Square {
+    std::array<float, kSide * kSide> values;
+    std::size_t bytes() const { return sizeof *this; }
+  };
+  // Lines along an axis that lie in one square: the first of them, its place in the square, and
+  // their number.
+  struct Part {
+    std::size_t first, in_square, count;
+  };
+  struct Squares {
+    std::int64_t line, end;    // of all lines, counted from the world's origin
+    std::int64_t first, last;  // squares
+    Squares(std::span<const std::int64_t> lines, std::int64_t step)
+        : line(floor_div(lines.front(), step)),
+          end(line + static_cast<std::int64_t>(lines.size())),
+          first(floor_div(line, kSide)),
+          last(floor_div(end - 1, kSide)) {}
+    Part part(std::int64_t square) const {
+      const std::int64_t begin = std::max(line, square * kSide);
+      const std::int64_t beyond = std::min(end, (square + 1) * kSide);
+      return {static_cast<std::size_t>(begin - line),
+              static_cast<std::size_t>(begin - square * kSide),
+              static_cast<std::size_t>(beyond - begin)};
+    }
+  };
+
+  std::shared_ptr<const Square> square(std::int64_t i, std::int64_t j, std::int64_t step,
+                                       GroundDetail detail) const {
+    const std::uint64_t kind = core::combine(
+        core::combine(network_.identity(), static_cast<std::uint64_t>(detail.level)),
+        core::combine(static_cast<std::uint64_t>(step), std::bit_cast<std::uint32_t>(unit_m_)));
+    return kept_->get<Square>(
+        {kKind, kind, static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(j)}, [&] {
+          std::array<std::int64_t, kSide> x, z;
+          for (std::int64_t k = 0; k < kSide; ++k) {
+            x[static_cast<std::size_t>(k)] = (i * kSide + k) * step;
+            z[static_cast<std::size_t>(k)] = (j * kSide + k) * step;
+          }
+          Square made;
+          evaluate(x, z, detail, made.values, kSide);
+          return made;
+        });
+  }
+  static void copy(const Square& square, const Part& x, const Part& z, std::span<float> values,
+                   std::size_t stride) {
+    for (std::size_t r = 0; r < z.count; ++r)
+      std::copy_n(&square.values[(z.in_square + r) * kSide + x.in_square], x.count,
+                  &values[(z.first + r) * stride + x.first]);
+  }
+  void evaluate(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows,
+                GroundDetail detail, std::span<float> values, std::size_t stride) const {
+    network_.base({columns, rows}, detail, {.height_m = values.data(), .stride = stride});
     for (std::size_t r = 0; r < rows.size(); ++r) {
       for (std::size_t c = 0; c < columns.size(); ++c)
         values[r * stride + c] /= unit_m_;
     }
   }
 
- private:
+  static constexpr std::uint64_t kKind = 0x6C696E6573ULL;  // apart from heights of blocks
   const RiverNetwork& network_;
   float unit_m_;
   GroundDetail detail_;
+  core::ValueCache* kept_;
 };
 
 // Octaves of the noise that are narrower than a network's nodes are detail on its land, with this
@@ -180,7 +254,8 @@ void TerrainShape::evaluate_network(std::span<const std::int64_t> columns,
         other[i] = erosion->plain(fine[i], {base[i] / metres, base[i], slope_x[i], slope_z[i]});
     } else {
       std::copy(fine.begin(), fine.end(), other.begin());
-      erosion->apply(NetworkGuide(network, metres, detail), columns, rows, other, width);
+      erosion->apply(NetworkGuide(network, metres, detail, stack->heights.get()), columns, rows,
+                     other, width);
     }
     for (std::size_t i = 0; i < count; ++i)
       fine[i] += (other[i] - fine[i]) * clear[i];
@@ -204,9 +279,8 @@ void TerrainShape::each_patch(LatticeSpan x, LatticeSpan z, GroundDetail detail,
   const std::optional<ErosionFilter> erosion = filter(detail);
   if (!erosion || erosion->is_plain()) return;
   const auto wide = static_cast<std::int64_t>(erosion->guide_margin_cells());
-  for (const double narrowest : {erosion->narrowest_cells(), erosion->lines_show_cells()})
-    stack->network->each_tile({x.first - wide, x.last + wide}, {z.first - wide, z.last + wide},
-                              guide_detail(detail, narrowest), visit);
+  stack->network->each_tile({x.first - wide, x.last + wide}, {z.first - wide, z.last + wide},
+                            guide_detail(detail, erosion->lines_show_cells()), visit);
 }
 
 // Measured: one edit takes 8 times as long for a height as an octave of the noise.
