@@ -9,79 +9,6 @@
 #include "engine/core/hash.hpp"
 
 namespace psygen::world {
-namespace {
-
-// Smaller patches are enlarged to this size, so that lattice points of the largest world fit in 64
-// bits.
-constexpr double kMinPatchM = 0.1;
-
-// A random number in [0, 1) for each point of a lattice.
-double lattice_value(std::uint64_t seed, std::int64_t x, std::int64_t z) {
-  const std::uint64_t hash = core::combine(core::combine(seed, static_cast<std::uint64_t>(x)),
-                                           static_cast<std::uint64_t>(z));
-  return static_cast<double>(hash >> 11) * 0x1.0p-53;
-}
-
-double smooth_noise(std::uint64_t seed, glm::dvec2 p) {
-  const double x = std::floor(p.x), z = std::floor(p.y);
-  const auto curve = [](double t) { return t * t * t * (t * (6 * t - 15) + 10); };
-  const double u = curve(p.x - x), v = curve(p.y - z);
-  const auto i = static_cast<std::int64_t>(x), k = static_cast<std::int64_t>(z);
-  const double near = lattice_value(seed, i, k) * (1 - u) + lattice_value(seed, i + 1, k) * u;
-  const double far =
-      lattice_value(seed, i, k + 1) * (1 - u) + lattice_value(seed, i + 1, k + 1) * u;
-  return near * (1 - v) + far * v;
-}
-
-// Patches with frayed borders.
-double patch_noise(std::uint64_t seed, glm::dvec2 p) {
-  return (smooth_noise(seed, p) + 0.4 * smooth_noise(seed + 1, 2.3 * p)) / 1.4;
-}
-
-// The noise value that this fraction of the ground stays below, measured once at 2^14 positions.
-double noise_below(double share) {
-  static const std::vector<double> sorted = [] {
-    std::vector<double> values;
-    for (int i = 0; i < 1 << 14; ++i)
-      values.push_back(patch_noise(0, {0.37 * (i % 128), 0.37 * (i / 128)}));
-    std::ranges::sort(values);
-    return values;
-  }();
-  const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(sorted.size());
-  const auto index = static_cast<std::size_t>(at);
-  return index < sorted.size() ? sorted[index] : 2.0;
-}
-
-}  // namespace
-
-double GreyPicture::at(double u, double v) const {
-  const auto place = [](double t, std::uint32_t size) {
-    return std::clamp(t * size - 0.5, 0.0, static_cast<double>(size - 1));
-  };
-  const double x = place(u, width), y = place(v, height);
-  const auto left = static_cast<std::size_t>(x), top = static_cast<std::size_t>(y);
-  const std::size_t right = std::min<std::size_t>(left + 1, width - 1);
-  const std::size_t below = std::min<std::size_t>(top + 1, height - 1);
-  const double s = x - static_cast<double>(left), t = y - static_cast<double>(top);
-  const auto value = [&](std::size_t column, std::size_t row) {
-    return static_cast<double>(pixels[row * width + column]) / 65535;
-  };
-  return (value(left, top) * (1 - s) + value(right, top) * s) * (1 - t) +
-         (value(left, below) * (1 - s) + value(right, below) * s) * t;
-}
-
-std::uint64_t content_hash(const GreyPicture& picture) {
-  std::uint64_t hash = core::mix64(picture.width);
-  for (std::uint32_t row = 0; row < picture.height; ++row)
-    hash += row_hash(picture, row);
-  return hash;
-}
-
-std::uint64_t row_hash(const GreyPicture& picture, std::uint32_t row) {
-  const std::span<const std::uint16_t> pixels(picture.pixels);
-  return core::hash_bytes(
-      std::as_bytes(pixels.subspan(std::size_t{row} * picture.width, picture.width)), row);
-}
 
 HeightPicture finished(HeightPicture picture) {
   const auto is_whole = [](float v) {
@@ -115,12 +42,15 @@ bool operator==(const ScatterMask& a, const ScatterMask& b) {
          a.ground == b.ground;
 }
 
+std::uint64_t patch_seed(const ScatterMask& mask, std::uint64_t world_seed) {
+  return core::combine(core::mix64(world_seed), static_cast<std::uint64_t>(mask.patches));
+}
+
 double mask_share(const ScatterMask& mask, std::uint64_t seed, glm::dvec2 place_m) {
   if (mask.noise_m > 0) {
-    const std::uint64_t patches =
-        core::combine(core::mix64(seed), static_cast<std::uint64_t>(mask.patches));
-    const double patch_m = std::max(mask.noise_m, kMinPatchM);
-    if (!(patch_noise(patches, place_m / patch_m) < noise_below(mask.share))) return 0;
+    if (!(models::patch_noise(patch_seed(mask, seed), place_m, mask.noise_m) <
+          models::patch_noise_below(mask.share)))
+      return 0;
   }
   if (!mask.picture) return 1;
   const auto& [left, top, right, bottom] = mask.area_m;

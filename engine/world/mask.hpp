@@ -1,6 +1,7 @@
 // Masks restrict the instances of a scatter beyond limits of height and slope. An image and patches
 // of noise thin instances out; kinds of ground are limits. Pure functions of the position, the same
-// on every machine; any thread. They read no files (files/scatter_file.hpp).
+// on every machine; any thread. They read no files (files/scatter_file.hpp). Stamps have the image
+// and the patches too, but with soft borders (models/ground/ground_mask.hpp).
 #pragma once
 
 #include <array>
@@ -11,25 +12,13 @@
 #include <vector>
 
 #include "engine/core/coordinates.hpp"
+#include "engine/models/ground/ground_mask.hpp"
 
 namespace psygen::world {
 
-// A greyscale image: values 0 … 65535, row by row from the top.
-struct GreyPicture {
-  std::uint32_t width = 0, height = 0;
-  std::vector<std::uint16_t> pixels;
-  std::uint64_t hash = 0;  // content_hash() of all members above
-
-  // Linear interpolation between pixel centres, 0 … 1. (0, 0) is the upper left corner, (1, 1) the
-  // lower right one. Outside, the value of the border.
-  double at(double u, double v) const;
-};
-
-// The required value of GreyPicture::hash: the sum modulo 2^64 of the row hashes and the width.
-// After some rows have changed, their row hashes are enough to update it.
-std::uint64_t content_hash(const GreyPicture& picture);
-// The contribution of one row.
-std::uint64_t row_hash(const GreyPicture& picture, std::uint32_t row);
+using models::content_hash;
+using models::GreyPicture;
+using models::row_hash;
 
 // The numbers of an image as its file stores them, row by row from the top.
 struct HeightPicture {
@@ -65,6 +54,9 @@ struct ScatterMask {
   // Compares images by content.
   friend bool operator==(const ScatterMask& a, const ScatterMask& b);
 };
+
+// The seed of its patches in a world of this seed.
+std::uint64_t patch_seed(const ScatterMask& mask, std::uint64_t world_seed);
 
 // The fraction of instances that the mask keeps at a position of the world, 0 … 1.
 double mask_share(const ScatterMask& mask, std::uint64_t seed, glm::dvec2 place_m);

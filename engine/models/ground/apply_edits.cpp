@@ -4,7 +4,10 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/core/assert.hpp"
+#include "engine/models/ground/erosion.hpp"
 #include "engine/models/ground/ground_edits.hpp"
+#include "engine/models/kit/scratch.hpp"
 
 namespace psygen::models {
 namespace {
@@ -66,7 +69,19 @@ MapPoint height_in(const Heightmap& map, double u, double v) {
   return {a + t * (b - a), 1};
 }
 
-// Returns a height of the ground, in metres, after an edit.
+// Turns a place around the centre of an edit back to the sides of its stamp.
+glm::dvec2 along_sides(const GroundEdit& edit, double dx, double dz) {
+  if (edit.turn == glm::dvec2(1, 0)) return {dx, dz};
+  return {dx * edit.turn.x - dz * edit.turn.y, dx * edit.turn.y + dz * edit.turn.x};
+}
+
+// The fraction of the rectangle of an edit before a place, along both sides.
+glm::dvec2 share_of_sides(const GroundEdit& edit, glm::dvec2 place_m) {
+  return {0.5 + 0.5 * place_m.x / (edit.radius_m * edit.sides.x),
+          0.5 + 0.5 * place_m.y / (edit.radius_m * edit.sides.y)};
+}
+
+// Returns a height of the ground, in metres, after the whole change of an edit.
 double edited(const GroundEdit& edit, double height_m, double dx, double dz) {
   if (edit.road) {
     const RoadEffect road = effect_of(*edit.road, {dx, dz});
@@ -74,15 +89,11 @@ double edited(const GroundEdit& edit, double height_m, double dx, double dz) {
   }
   if (edit.river) return shaped_by(*edit.river, height_m, {dx, dz});
   if (edit.lake) return shaped_by(*edit.lake, height_m, {dx, dz});
-  if (edit.turn != glm::dvec2(1, 0)) {  // back to the sides of the stamp
-    const double x = dx * edit.turn.x - dz * edit.turn.y;
-    dz = dx * edit.turn.y + dz * edit.turn.x;
-    dx = x;
-  }
-  const double weight = weight_of(edit, dx, dz);
+  const glm::dvec2 place_m = along_sides(edit, dx, dz);
+  const double weight = weight_of(edit, place_m.x, place_m.y);
   const auto stamp = [&] {
-    return height_in(*edit.map, 0.5 + 0.5 * dx / (edit.radius_m * edit.sides.x),
-                     0.5 + 0.5 * dz / (edit.radius_m * edit.sides.y));
+    const glm::dvec2 share = share_of_sides(edit, place_m);
+    return height_in(*edit.map, share.x, share.y);
   };
   switch (edit.change) {
     case GroundChange::kRaise:
@@ -105,6 +116,72 @@ double edited(const GroundEdit& edit, double height_m, double dx, double dz) {
   return height_m;
 }
 
+// Returns a height after the part of a change from `before_m` to `after_m` that an edit makes where
+// its mask is `share`. Monotone in `before_m` if the whole change is.
+double blended(const GroundEdit& edit, double before_m, double after_m, double share) {
+  double change_m = after_m - before_m;
+  if (edit.blend == GroundBlend::kHighest) change_m = std::max(change_m, 0.0);
+  if (edit.blend == GroundBlend::kLowest) change_m = std::min(change_m, 0.0);
+  return before_m + edit.strength * share * change_m;
+}
+
+// Masks read features of the guide that are at least so many cells wide. Its slope is that between
+// so many cells before and after a place: no farther away than the light of every node reads, so
+// masks need no more patches of a river network.
+constexpr double kGuideCells = 8;
+constexpr std::int64_t kGuideStep = 4;
+
+// The guide at the samples of one edit, row by row.
+class GuideRows {
+ public:
+  GuideRows(const GroundMask& mask, const ErosionGuide& guide, const GroundScale& scale,
+            std::span<const std::int64_t> x, std::span<const std::int64_t> z)
+      : mask_(mask),
+        unit_m_(scale.unit_m),
+        run_m_(2 * kGuideStep * scale.cell_m),
+        count_(x.size() * z.size()),
+        memory_((mask.slope.is_limited() ? 5 : 1) * count_ * sizeof(float)) {
+    const auto fill = [&](std::size_t i, std::span<const std::int64_t> columns,
+                          std::span<const std::int64_t> rows) {
+      guide.heights(columns, rows, kGuideCells, plane(i), x.size());
+    };
+    fill(0, x, z);
+    if (!mask.slope.is_limited()) return;
+    std::vector<std::int64_t> moved;
+    const auto by = [&moved](std::span<const std::int64_t> at, std::int64_t step) {
+      moved.assign(at.begin(), at.end());
+      for (std::int64_t& i : moved)
+        i += step;
+      return std::span<const std::int64_t>(moved);
+    };
+    fill(1, by(x, kGuideStep), z);
+    fill(2, by(x, -kGuideStep), z);
+    fill(3, x, by(z, kGuideStep));
+    fill(4, x, by(z, -kGuideStep));
+  }
+
+  // The ranges of the mask at a sample.
+  double share(std::size_t i) const {
+    const double height_m = double{plane(0)[i]} * unit_m_;
+    if (!mask_.slope.is_limited()) return mask_.on(height_m, 0);
+    const auto rise_m = [&](std::size_t to, std::size_t from) {
+      return (double{plane(to)[i]} - double{plane(from)[i]}) * unit_m_;
+    };
+    const double x = rise_m(1, 2) / run_m_, z = rise_m(3, 4) / run_m_;
+    return mask_.on(height_m, std::sqrt(x * x + z * z));
+  }
+
+ private:
+  std::span<float> plane(std::size_t i) const {
+    return {static_cast<float*>(memory_.get()) + i * count_, count_};
+  }
+
+  const GroundMask& mask_;
+  double unit_m_, run_m_;
+  std::size_t count_;
+  ScratchMemory memory_;
+};
+
 struct Range {
   std::size_t first, end;
   bool empty() const { return first >= end; }
@@ -115,8 +192,14 @@ class Application {
  public:
   Application(const GroundScale& scale, std::span<const std::int64_t> x,
               std::span<const std::int64_t> z, std::span<float> values, std::size_t stride,
-              double narrowest_m)
-      : scale_(scale), x_(x), z_(z), values_(values), stride_(stride), narrowest_m_(narrowest_m) {}
+              double narrowest_m, const ErosionGuide* guide)
+      : scale_(scale),
+        x_(x),
+        z_(z),
+        values_(values),
+        stride_(stride),
+        narrowest_m_(narrowest_m),
+        guide_(guide) {}
 
   void walk(const Cell* cell, QuadCoord region, Range columns, Range rows) {
     if (cell != nullptr && active_.empty() && cell->place != region) {
@@ -204,15 +287,34 @@ class Application {
 
   void apply(const GroundEdit& edit, Range columns, Range rows) {
     const core::WorldPosition& from = edit.origin();
+    std::optional<GuideRows> guide;
+    if (edit.mask && edit.mask->reads_guide()) {
+      PSYGEN_ASSERT(guide_ != nullptr, "masks of height and slope have a guide");
+      guide.emplace(*edit.mask, *guide_, scale_, part(x_, columns), part(z_, rows));
+    }
+    std::size_t sample = 0;
     for (std::size_t k = rows.first; k < rows.end; ++k) {
       const double dz = away_m(z_[k], from.block.z, from.local.z);
       for (std::size_t i = columns.first; i < columns.end; ++i) {
         const double dx = away_m(x_[i], from.block.x, from.local.x);
         float& value = values_[k * stride_ + i];
-        const double height_m = edited(edit, double{value} * scale_.unit_m, dx, dz);
+        const double before_m = double{value} * scale_.unit_m;
+        double height_m = edited(edit, before_m, dx, dz);
+        if (!edit.is_whole()) {
+          double share = edit.mask ? edit.mask->at({world_m(x_[i]), world_m(z_[k])},
+                                                   share_of_sides(edit, along_sides(edit, dx, dz)))
+                                   : 1;
+          if (guide) share *= guide->share(sample++);
+          height_m = blended(edit, before_m, height_m, share);
+        }
         value = std::clamp(static_cast<float>(height_m / scale_.unit_m), 0.0F, scale_.highest);
       }
     }
+  }
+
+  double world_m(std::int64_t at) const { return static_cast<double>(at) * scale_.cell_m; }
+  static std::span<const std::int64_t> part(std::span<const std::int64_t> at, Range range) {
+    return at.subspan(range.first, range.end - range.first);
   }
 
   const GroundScale& scale_;
@@ -220,6 +322,7 @@ class Application {
   std::span<float> values_;
   std::size_t stride_;
   double narrowest_m_;
+  const ErosionGuide* guide_;
   std::vector<const GroundEdit*> active_;
   std::vector<Act> ordered_;
 };
@@ -276,9 +379,9 @@ bool keeps_clear(const RoadPiece& road, core::BlockCoord block, glm::dvec2 local
 
 void GroundEdits::apply(const GroundScale& scale, std::span<const std::int64_t> x,
                         std::span<const std::int64_t> z, std::span<float> values,
-                        std::size_t stride, double narrowest_m) const {
+                        std::size_t stride, double narrowest_m, const ErosionGuide* guide) const {
   if (cells_.empty()) return;
-  Application(scale, x, z, values, stride, narrowest_m)
+  Application(scale, x, z, values, stride, narrowest_m, guide)
       .walk(cells_.root(), {QuadCoord::kMaxLevel, 0, 0}, {0, x.size()}, {0, z.size()});
 }
 

@@ -80,7 +80,7 @@ inline constexpr auto visit_erosion = [](auto& e, const auto& visit) {
   visit("strata", e.strata, Spec{{0, 1}, {0, 1}, "", "steps that the layers form on cliffs"});
 };
 
-// The slow ground that an erosion follows.
+// The slow ground that an erosion follows, and that masks of shapes read.
 class ErosionGuide {
  public:
   virtual ~ErosionGuide() = default;

@@ -64,6 +64,11 @@ std::uint64_t content_hash(const GroundEdit& edit) {
     add(now.x);
     add(now.y);
   }
+  if (!edit.is_whole()) {
+    add(edit.strength);
+    hash = core::combine(hash, static_cast<std::uint64_t>(edit.blend));
+    hash = core::combine(hash, edit.mask ? edit.mask->hash() : 0);
+  }
   if (edit.river) hash = core::combine(hash, content_of(*edit.river));
   if (edit.lake) hash = core::combine(hash, content_of(*edit.lake));
   if (!edit.road) return hash;
@@ -81,12 +86,12 @@ std::uint64_t content_hash(const GroundEdit& edit) {
 float max_of(const GroundEdit& edit) {
   if (edit.change == GroundChange::kRaise || edit.change == GroundChange::kRoad ||
       is_water(edit.change))
-    return static_cast<float>(std::abs(edit.height_m));
+    return static_cast<float>(edit.strength * std::abs(edit.height_m));
   if (edit.change != GroundChange::kStampAdd) return 1e30F;  // limited by the height range
   float most = 0;
   for (const float h : edit.map->heights_m)
     most = std::max(most, std::abs(h));
-  return most;
+  return static_cast<float>(edit.strength * double{most});
 }
 
 // Calls visit(place) for the at most four squares that list an edit: as large as its influence,
@@ -123,7 +128,9 @@ float steepness_of(const GroundEdit& edit) {
     const double points = std::max(edit.map->columns / edit.sides.x, edit.map->rows / edit.sides.y);
     slope += (edit.map->has_holes ? 1.5 : 1) * points / edit.radius_m;
   }
-  return std::min(edit.max_m, 1e6F) * static_cast<float>(slope);
+  if (edit.mask)
+    slope += edit.mask->steepness(2 * edit.radius_m * std::min(edit.sides.x, edit.sides.y));
+  return std::min(std::min(edit.max_m, 1e6F) * static_cast<float>(slope), 1e30F);
 }
 
 // Visits the edits of the cells that touch an area, from the largest cell down: visit(edit). A cell
@@ -190,6 +197,12 @@ GroundCell::Summary max_in(const Cell* cell, const Area& area, double block_m) {
   return most;
 }
 
+// Time that a mask takes for a height, in the same units as its edit. Measured.
+double weight_of(const GroundMask& mask) {
+  return (mask.picture ? 3 : 0) + (mask.noise_m > 0 ? 14 : 0) + (mask.reads_guide() ? 2 : 0) +
+         (mask.slope.is_limited() ? 1 : 0);
+}
+
 // Time that an edit takes for a height, in units of a simple edit. Measured.
 double weight_of(const GroundEdit& edit) {
   std::size_t segments = 0;
@@ -197,7 +210,8 @@ double weight_of(const GroundEdit& edit) {
   if (edit.river) segments = edit.river->points.size() + edit.river->near.size();
   if (edit.lake) segments = edit.lake->segments.size();
   if (segments > 0) return 1 + 0.5 * static_cast<double>(segments);
-  return is_stamp(edit.change) ? 3 : 1;
+  const double weight = is_stamp(edit.change) ? 3 : 1;
+  return edit.mask ? weight + weight_of(*edit.mask) : weight;
 }
 
 // Returns the sum of the weighted areas of edits within an area, in blocks².

@@ -16,10 +16,13 @@
 #include <vector>
 
 #include "engine/core/coordinates.hpp"
+#include "engine/models/ground/ground_mask.hpp"
 #include "engine/models/ground/water.hpp"
 #include "engine/models/kit/quad_map.hpp"
 
 namespace psygen::models {
+
+class ErosionGuide;
 
 // The change that an edit makes to the height under it.
 enum class GroundChange : std::uint8_t {
@@ -37,6 +40,13 @@ constexpr bool is_water(GroundChange change) {
 constexpr bool is_stamp(GroundChange change) {
   return change == GroundChange::kStampAdd || change == GroundChange::kStampSet;
 }
+
+// The part of its change that an edit makes.
+enum class GroundBlend : std::uint8_t {
+  kMix,      // all of it
+  kHighest,  // only where the ground rises
+  kLowest,   // only where the ground falls
+};
 
 // Heights in metres over a square, row by row from its corner at the least x and z. Linear between
 // its points; the outer ones lie on the square's border.
@@ -93,7 +103,10 @@ struct GroundEdit {
   std::shared_ptr<const RoadPiece> road;    // of kRoad, whose square encloses the piece
   std::shared_ptr<const RiverPiece> river;  // of kRiver, as for roads
   std::shared_ptr<const LakePiece> lake;    // of kLake, as for roads
-  std::uint32_t id = 0;                     // unique in the block of the centre
+  double strength = 1;                      // fraction of the change, 0 … 1
+  GroundBlend blend = GroundBlend::kMix;
+  std::shared_ptr<const GroundMask> mask;  // fraction of the change at each place; null: all of it
+  std::uint32_t id = 0;                    // unique in the block of the centre
   // Set by seal():
   std::uint64_t content = 0;  // identifies everything above
   float max_m = 0;            // largest height change; 1e30: limited by the height range only
@@ -104,6 +117,8 @@ struct GroundEdit {
   const core::WorldPosition& origin() const {
     return road ? road->origin : river ? river->origin : lake ? lake->origin : centre;
   }
+  // True if it makes its whole change everywhere.
+  bool is_whole() const { return strength == 1 && blend == GroundBlend::kMix && !mask; }
   // Edits act in this order.
   std::pair<std::uint32_t, core::BlockCoord> order() const { return {id, centre.block}; }
 };
@@ -199,10 +214,11 @@ class GroundEdits {
   double edits_per_height(const GroundScale& scale, LatticeSpan x, LatticeSpan z) const;
 
   // Applies the edits to heights at the lattice points (x[i], z[k]), values[k · stride + i]. x and
-  // z ascend. Skips edits of a radius below `narrowest_m`. Linear in the heights that change.
+  // z ascend. Skips edits of a radius below `narrowest_m`. Linear in the heights that change. Masks
+  // of height and slope read `guide`, in the units of the values; null only if there are none.
   void apply(const GroundScale& scale, std::span<const std::int64_t> x,
              std::span<const std::int64_t> z, std::span<float> values, std::size_t stride,
-             double narrowest_m = 0) const;
+             double narrowest_m = 0, const ErosionGuide* guide = nullptr) const;
 
  private:
   QuadMap<GroundCell> cells_;

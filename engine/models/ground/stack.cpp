@@ -79,11 +79,11 @@ double GroundStack::edits_per_height(const GroundScale& scale, LatticeSpan x, La
 
 void GroundStack::apply(const GroundScale& scale, std::span<const std::int64_t> x,
                         std::span<const std::int64_t> z, std::span<float> values,
-                        std::size_t stride, GroundDetail detail) const {
+                        std::size_t stride, GroundDetail detail, const ErosionGuide& guide) const {
   // Narrower edits would be missed or hit by chance, like narrower octaves.
   const double narrowest_m = detail.light ? detail.spacing_cells() * scale.cell_m : 0;
-  shapes.apply(scale, x, z, values, stride, narrowest_m);
-  edits.apply(scale, x, z, values, stride, narrowest_m);
+  shapes.apply(scale, x, z, values, stride, narrowest_m, &guide);
+  edits.apply(scale, x, z, values, stride, narrowest_m, &guide);
 }
 
 }  // namespace psygen::models

@@ -75,10 +75,10 @@ struct GroundStack {
   // units of the time for a simple edit. It never depends on a cache.
   double edits_per_height(const GroundScale& scale, LatticeSpan x, LatticeSpan z) const;
   // Changes eroded heights at the lattice points (x[i], z[k]), values[k · stride + i], by shapes
-  // and edits. x and z ascend.
+  // and edits. x and z ascend. Masks read the guide of the ground below.
   void apply(const GroundScale& scale, std::span<const std::int64_t> x,
              std::span<const std::int64_t> z, std::span<float> values, std::size_t stride,
-             GroundDetail detail) const;
+             GroundDetail detail, const ErosionGuide& guide) const;
 
  private:
   std::uint64_t fixed_identity() const;

@@ -212,13 +212,15 @@ void TerrainShape::evaluate(std::span<const std::int64_t> columns,
                             std::size_t stride, GroundDetail detail) const {
   if (stack != nullptr && stack->network != nullptr) {
     evaluate_network(columns, rows, values, stride, detail);
+    stack->apply(scale(), columns, rows, values, stride, detail,
+                 NetworkGuide(*stack->network, metres, detail));
   } else {
     noise.evaluate(columns, rows, values, stride, octaves(detail));
     if (stack == nullptr) return;
     if (const std::optional<ErosionFilter> erosion = filter(detail))
       erosion->apply(NoiseGuide(noise, octaves(detail)), columns, rows, values, stride);
+    stack->apply(scale(), columns, rows, values, stride, detail, NoiseGuide(noise, kMaxOctaves));
   }
-  stack->apply(scale(), columns, rows, values, stride, detail);
 }
 
 // The land of the network with the detail of the noise and with erosion, which both fade at

@@ -120,29 +120,50 @@ std::vector<std::uint16_t> heights_of(const World& world, core::BlockCoord node,
   return heights;
 }
 
+// An edit around a place whose mask reads heights and slopes of the land below it.
+std::shared_ptr<const models::GroundEdit> masked_stamp(core::WorldPosition centre) {
+  models::GroundEdit hill;
+  hill.centre = centre;
+  hill.radius_m = 3000;
+  hill.height_m = 20;
+  models::GroundMask mask;
+  mask.height_m.min = 25;
+  mask.slope.max = 0.8, mask.slope.max_fade = 0.5;
+  hill.mask = std::make_shared<const models::GroundMask>(mask);
+  seal(hill);
+  return std::make_shared<const models::GroundEdit>(hill);
+}
+
 // Whatever asks for the ground of a node finds its patches in the store.
 TEST(NetworkGround, OfANodeReadsOnlyItsPatches) {
-  World world = parsed(network_text() + kNetworkErosion);
-  set_sun(world.terrain, 100, 12);  // far hills hide it
-  for (const int level : {0, 1, 3, 6, 8}) {
-    for (const core::BlockCoord node : {core::BlockCoord{3, -2}, {-8, 15}, {31, 32}}) {
-      models::EditLayer layer = *world.shaped.layer;
-      const models::RiverNetwork& before = *layer.ground.network;
-      const auto store = std::make_shared<models::NetworkStore>(std::size_t{1} << 30);
-      const auto network = *models::RiverNetwork::create(before.settings(), before.frame(), store);
-      layer.ground.network = network;
-      layer.ground.heights = nullptr;
-      world.shaped.layer = std::make_shared<const models::EditLayer>(layer);
-      const models::Parameters terrain = terrain_parameters(world, node, level);
-      for (const models::network::TileKey& tile : models::ground_patches(terrain))
-        static_cast<void>(network->patch(tile));
-      const std::size_t bytes = store->bytes();
-      static_cast<void>(mesh_of(world, node, level, 0));
-      static_cast<void>(mesh_of(world, node, level, 1));
-      static_cast<void>(heights_of(world, node, level));
-      static_cast<void>(water_parameters(world, node, level));
-      EXPECT_EQ(store->bytes(), bytes)
-          << "node " << node.x << ' ' << node.z << " of level " << level;
+  constexpr core::BlockCoord kNodes[]{{3, -2}, {-8, 15}, {31, 32}};
+  for (const bool erodes : {true, false}) {
+    const World plain = parsed(network_text() + (erodes ? kNetworkErosion : ""));
+    for (const int level : {0, 1, 3, 6, 8}) {
+      for (const core::BlockCoord node : kNodes) {
+        models::EditLayer layer = *plain.shaped.layer;
+        const models::RiverNetwork& before = *layer.ground.network;
+        const auto store = std::make_shared<models::NetworkStore>(std::size_t{1} << 30);
+        const auto network =
+            *models::RiverNetwork::create(before.settings(), before.frame(), store);
+        layer.ground.network = network;
+        layer.ground.heights = nullptr;
+        layer.ground.shapes.add(
+            masked_stamp({{node.x * (1 << level), node.z * (1 << level)}, {10, 0, 10}}), kBlockM);
+        World world = plain;
+        set_sun(world.terrain, 100, 12);  // far hills hide it
+        world.shaped.layer = std::make_shared<const models::EditLayer>(layer);
+        const models::Parameters terrain = terrain_parameters(world, node, level);
+        for (const models::network::TileKey& tile : models::ground_patches(terrain))
+          static_cast<void>(network->patch(tile));
+        const std::size_t bytes = store->bytes();
+        static_cast<void>(mesh_of(world, node, level, 0));
+        static_cast<void>(mesh_of(world, node, level, 1));
+        static_cast<void>(heights_of(world, node, level));
+        static_cast<void>(water_parameters(world, node, level));
+        EXPECT_EQ(store->bytes(), bytes)
+            << "node " << node.x << ' ' << node.z << " of level " << level;
+      }
     }
   }
 }
@@ -167,6 +188,25 @@ TEST(NetworkGround, HasTheSameHeightsWithAndWithoutKeptOnes) {
   set_sun(evening.terrain, 250, 8);
   EXPECT_EQ(heights_of(evening, {3, -2}), heights_of(keeping, {3, -2}));
   EXPECT_EQ(keeping.shaped.layer->ground.heights->bytes(), bytes);
+}
+
+TEST(NetworkGround, AgreesAlongSeamsUnderAMaskedStamp) {
+  World world = parsed(network_text() + kNetworkErosion);
+  const World plain = world;
+  models::EditLayer layer = *world.shaped.layer;
+  layer.ground.shapes.add(masked_stamp({{3, 3}, {10, 0, 10}}), kBlockM);
+  world.shaped.layer = std::make_shared<const models::EditLayer>(layer);
+  std::size_t raised = 0, same = 0;
+  for (int level = 0; level < 5; ++level) {
+    for (const core::BlockCoord node : {core::BlockCoord{0, 0}, {1, 1}}) {
+      expect_equal_seams(world, node, level);
+      const auto with = heights_of(world, node, level), without = heights_of(plain, node, level);
+      for (std::size_t i = 0; i < with.size(); ++i)
+        ++(with[i] == without[i] ? same : raised);
+    }
+  }
+  EXPECT_GT(raised, 500U);
+  EXPECT_GT(same, 500U);
 }
 
 TEST(NetworkGround, KeepsNoHeightsOverAnEdit) {
