@@ -21,6 +21,9 @@ using models::PlacedModel;
 using models::RemovedModel;
 
 constexpr std::uint32_t kMagic = 0x44454750;  // "PGED"
+// This bit of its change marks an edit of the ground that is not whole. Programs that do not know
+// it reject the block.
+constexpr std::uint8_t kPart = 0x80;
 using Bytes = std::vector<std::byte>;
 
 tl::unexpected<core::Error> broken(core::BlockCoord block, std::string_view why) {
@@ -104,7 +107,8 @@ class BlockReader {
     for (std::size_t i = 0; i < count; ++i) {
       GroundEdit e;
       e.id = in_.get<std::uint32_t>();
-      const auto change = in_.get<std::uint8_t>();
+      const auto marked = in_.get<std::uint8_t>();
+      const auto change = static_cast<std::uint8_t>(marked & ~kPart);
       if (change > static_cast<std::uint8_t>(models::GroundChange::kLake) ||
           change == static_cast<std::uint8_t>(models::GroundChange::kRoad))
         return wrong(fmt::format("{} is not a type of ground edit", change));
@@ -112,6 +116,10 @@ class BlockReader {
       e.square = in_.get<std::uint8_t>() != 0;
       e.centre.block = block_;
       in_.read(e.centre.local.x, e.centre.local.z, e.radius_m, e.falloff, e.height_m);
+      if ((marked & kPart) != 0) {
+        in_.read(e.strength);
+        e.blend = static_cast<models::GroundBlend>(in_.get<std::uint8_t>());
+      }
       if (is_stamp(e.change)) {
         e.square = true;
         auto map = std::make_shared<models::Heightmap>();
@@ -271,9 +279,11 @@ void put_lake(const models::LakePiece& lake, Bytes& out) {
 }
 
 void put_ground(const GroundEdit& e, Bytes& out) {
-  core::put(out, e.id, static_cast<std::uint8_t>(e.change),
+  const auto change = static_cast<std::uint8_t>(e.change);
+  core::put(out, e.id, e.is_whole() ? change : static_cast<std::uint8_t>(change | kPart),
             static_cast<std::uint8_t>(e.square ? 1 : 0), e.centre.local.x, e.centre.local.z,
             e.radius_m, e.falloff, e.height_m);
+  if (!e.is_whole()) core::put(out, e.strength, static_cast<std::uint8_t>(e.blend));
   if (e.river) put_river(*e.river, out);
   if (e.lake) put_lake(*e.lake, out);
   if (!is_stamp(e.change)) return;

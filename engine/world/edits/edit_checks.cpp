@@ -142,6 +142,12 @@ core::Result<void> check_ground(const World& world, const GroundEdit& edit) {
   if (!(edit.falloff >= 0 && edit.falloff <= 1))
     return core::invalid_argument(
         fmt::format("a falloff of {:g} is not allowed: it must be 0 to 1", edit.falloff));
+  if (!(edit.strength >= 0 && edit.strength <= 1))
+    return core::invalid_argument(
+        fmt::format("a strength of {:g} is not allowed: it must be 0 to 1", edit.strength));
+  if (edit.blend > models::GroundBlend::kLowest)
+    return core::invalid_argument("this type of blend does not exist");
+  if (edit.mask) return core::invalid_argument("masks can be in world files only");
   switch (edit.change) {
     case models::GroundChange::kRaise:
       if (std::abs(edit.height_m) <= relief_m) return {};
@@ -162,7 +168,7 @@ core::Result<void> check_ground(const World& world, const GroundEdit& edit) {
       return core::invalid_argument("roads can be in world files only");
     case models::GroundChange::kRiver:
     case models::GroundChange::kLake:
-      if (edit.square && edit.height_m >= 0 && edit.height_m <= 2 * relief_m &&
+      if (edit.is_whole() && edit.square && edit.height_m >= 0 && edit.height_m <= 2 * relief_m &&
           (edit.river ? is_sound(*edit.river, relief_m)
                       : edit.lake && is_sound(*edit.lake, relief_m)))
         return {};

@@ -34,6 +34,9 @@ class EditBytes : public ::testing::Test, protected testing::EditedWorld {
     *map = {3, 2, {1, 2, 3, 4, 5, 6}};
     stamp.map = map;
     ASSERT_TRUE(edits.edit_ground(world, stamp));
+    stamp.strength = 0.5;
+    stamp.blend = models::GroundBlend::kHighest;
+    ASSERT_TRUE(edits.edit_ground(world, stamp));
   }
 };
 
@@ -224,6 +227,33 @@ TEST_F(EditBytes, AStoredStampIsAlwaysSquare) {
   Edits loaded;
   ASSERT_TRUE(load_block(loaded, world, registry, {2, 4}, disc));
   EXPECT_EQ(encode_block(loaded, registry, {2, 4}), whole);
+}
+
+// Edits that make their whole change have the bytes of older programs, and those reject the others.
+TEST_F(EditBytes, StrengthAndBlendOfAnEditAreStored) {
+  models::GroundEdit flat;
+  flat.change = models::GroundChange::kFlatten;
+  flat.centre = {{5, 5}, {20, 0, 30}};
+  flat.radius_m = 25;
+  flat.height_m = 30;
+  Edits whole, part;
+  ASSERT_TRUE(whole.edit_ground(world, flat));
+  flat.strength = 0.75;
+  flat.blend = models::GroundBlend::kLowest;
+  ASSERT_TRUE(part.edit_ground(world, flat));
+  const std::vector<std::byte> of_whole = encode_block(whole, registry, {5, 5}),
+                               of_part = encode_block(part, registry, {5, 5});
+  EXPECT_EQ(of_whole.size() + 9, of_part.size());
+  constexpr std::size_t kChange = 4 + 2 + 3 * 4 + 4;  // magic, version, counts, id
+  EXPECT_EQ(of_whole[kChange], std::byte{1});
+  EXPECT_EQ(of_part[kChange], std::byte{0x81});
+  Edits loaded;
+  ASSERT_TRUE(load_block(loaded, world, registry, {5, 5}, of_part));
+  EXPECT_EQ(hash_of(loaded), hash_of(part));
+  EXPECT_NE(hash_of(loaded), hash_of(whole));
+  const models::GroundEdit& back = *loaded.layer()->block({5, 5})->ground[0];
+  EXPECT_EQ(back.strength, 0.75);
+  EXPECT_EQ(back.blend, models::GroundBlend::kLowest);
 }
 
 TEST_F(EditBytes, BlocksFromDifferentEditsMayHaveTheSameIds) {

@@ -157,6 +157,18 @@ TEST_F(EditsTest, ImpossibleEditsAreRejectedWithAMessageAndChangeNothing) {
   refused(edits.raise(world, good, 1e6, 1), "radius");
   refused(edits.raise(world, good, 0, 1), "radius");
   refused(edits.raise(world, good, 5, kNan), "raising ground by nan m");
+  models::GroundEdit part;
+  part.centre = good;
+  for (const double strength : {-0.1, 1.1, kNan}) {
+    part.strength = strength;
+    refused(edits.edit_ground(world, part), "a strength of");
+  }
+  part.strength = 1;
+  part.blend = static_cast<models::GroundBlend>(3);
+  refused(edits.edit_ground(world, part), "blend does not exist");
+  part.blend = models::GroundBlend::kMix;
+  part.mask = std::make_shared<const models::GroundMask>();
+  refused(edits.edit_ground(world, part), "masks can be in world files only");
   refused(edits.raise(world, good, 5, 1e5), "not allowed");
   refused(edits.flatten(world, good, 5, -1), "height range of the terrain");
   refused(edits.flatten(world, good, 5, 1e4), "height range of the terrain");
