@@ -16,6 +16,8 @@ namespace {
 PicturePtr picture_of(const world::World& world, const std::string& name) {
   for (const world::Scatter& scatter : world.scatter)
     if (scatter.mask.image == name) return scatter.mask.picture;
+  for (const world::Stamp& stamp : world.shaped.stamps)
+    if (stamp.mask.image == name) return stamp.mask.picture;
   return nullptr;
 }
 

@@ -375,8 +375,10 @@ core::Result<std::vector<fs::path>> files_named_by(const world::World& world,
   }
   for (const world::Scatter& scatter : world.scatter)
     note(scatter.mask.image);
-  for (const world::Stamp& stamp : world.shaped.stamps)
+  for (const world::Stamp& stamp : world.shaped.stamps) {
     note(stamp.image);
+    note(stamp.mask.image);
+  }
   for (const std::string& image : world.palette.images)
     note(image);
   return names;

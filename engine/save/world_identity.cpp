@@ -178,8 +178,8 @@ std::vector<WorldPart> parts_of(const world::World& world, const models::Registr
   });
   part(kWater, [&](Facts& f) {
     if (world.water.exists()) f.add("water", world.water.level_m);
-    if (!world.shaped.lakes.empty()) f.add("lakes", world::bodies_hash(world.shaped.lakes));
-    if (!world.shaped.rivers.empty()) f.add("rivers", world::bodies_hash(world.shaped.rivers));
+    if (any_acts(world.shaped.lakes)) f.add("lakes", world::bodies_hash(world.shaped.lakes));
+    if (any_acts(world.shaped.rivers)) f.add("rivers", world::bodies_hash(world.shaped.rivers));
   });
   for (const world::Scatter& scatter : world.scatter) {
     const std::string_view name = registry[scatter.model].name();

@@ -18,6 +18,7 @@ class Course {
 
   // True if a place lies in its water.
   bool covers(glm::dvec2 at_m) const {
+    if (!river_.enabled) return false;
     const double widest_m = *std::ranges::max_element(river_.width_m);
     if (!box_.touches(FlatBox::around(at_m, at_m), widest_m)) return false;
     for (std::size_t i = 0; i + 1 < curve_.size(); ++i) {

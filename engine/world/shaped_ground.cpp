@@ -51,7 +51,7 @@ class Shaper {
         relief_m_(world.terrain.real(models::kTerrainReliefM)) {}
 
   Shaped add(const Stamp& stamp) {
-    const bool sets = stamp.mode == "set";
+    const bool sets = stamp.mode != "add";
     const double lowest = sets ? 0 : -relief_m_;
     const bool in_metres = stamp.is_in_metres();
     const auto [least, largest] = in_metres ? numbers_of(stamp) : std::pair{0.0F, 0.0F};
@@ -75,6 +75,10 @@ class Shaper {
     edit.sides = half_m / edit.radius_m;
     edit.falloff = std::min({stamp.border_m, half_m.x, half_m.y}) / edit.radius_m;
     edit.map = map_of(stamp);
+    edit.strength = stamp.strength;
+    if (stamp.mode == "highest") edit.blend = models::GroundBlend::kHighest;
+    if (stamp.mode == "lowest") edit.blend = models::GroundBlend::kLowest;
+    edit.mask = mask_of(stamp);
     if (stamp.turn_deg != 0)
       edit.turn = {models::exact_cos_degrees(stamp.turn_deg),
                    models::exact_sin_degrees(stamp.turn_deg)};
@@ -117,6 +121,8 @@ class Shaper {
     if (auto ok = add_length(road.points_m, "roads", kMaxRoadsM, roads_m_); !ok) return ok;
     auto edits = road_edits(world_, layer_, road);
     if (!edits) return refused("points_m", std::move(edits.error()));
+    for (GroundEdit& piece : *edits)
+      piece.strength = road.strength;
     return add(std::move(*edits));
   }
 
@@ -136,6 +142,7 @@ class Shaper {
     const GroundBelow shaped(world_, layer_);
     for (std::size_t i = 0; i < world_.shaped.roads.size(); ++i) {
       const Road& road = world_.shaped.roads[i];
+      if (!road.enabled) continue;
       for (const CurvePoint& point : curve_through(road.points_m, road.width_m)) {
         const auto water = shaped.water_over(point.at_m);
         if (!water) continue;
@@ -188,6 +195,28 @@ class Shaper {
     return map;
   }
 
+  // Null: it acts everywhere.
+  std::shared_ptr<const models::GroundMask> mask_of(const Stamp& stamp) const {
+    const auto rise = [](double degrees) {
+      constexpr double kSteepest = 89;
+      const double angle = std::clamp(degrees, 0.0, kSteepest);
+      return models::exact_sin_degrees(angle) / models::exact_cos_degrees(angle);
+    };
+    auto mask = std::make_shared<models::GroundMask>();
+    mask->picture = stamp.mask.picture;
+    mask->area_m = stamp.mask.area_m;
+    mask->noise_m = stamp.mask.noise_m;
+    mask->share = stamp.mask.share;
+    mask->patches = patch_seed(stamp.mask, world_.seed);
+    mask->height_m = {stamp.min_height_m, stamp.height_fade_m, stamp.max_height_m,
+                      stamp.height_fade_m};
+    const double low = stamp.min_slope_deg, high = stamp.max_slope_deg, fade = stamp.slope_fade_deg;
+    if (low > 0) mask->slope.min = rise(low), mask->slope.min_fade = rise(low + fade) - rise(low);
+    if (high < 90)
+      mask->slope.max = rise(high), mask->slope.max_fade = rise(high) - rise(high - fade);
+    return stamp.mask.thins() || mask->reads_guide() ? std::move(mask) : nullptr;
+  }
+
   // Adds the pieces of a road, a lake or a river.
   Shaped add(std::vector<GroundEdit> pieces) {
     for (GroundEdit& piece : pieces) {
@@ -220,10 +249,11 @@ Shaped wrong_at(std::string_view place, std::size_t number, Shaped failed) {
   return failed;
 }
 
-// Adds all shapes of one type.
+// Adds all shapes of one type that act.
 template <class Shapes>
 Shaped add_all(const Shapes& shapes, std::string_view place, Shaper& shaper) {
   for (std::size_t i = 0; i < shapes.size(); ++i) {
+    if (!acts(shapes[i])) continue;
     if (auto ok = shaper.add(shapes[i]); !ok) return wrong_at(place, i, std::move(ok));
   }
   return {};
@@ -234,12 +264,14 @@ Shaped add_water(const World& world, Shaper& shaper) {
   const ShapedGround& shaped = world.shaped;
   WaterBody body = kSea + 1;
   for (std::size_t i = 0; i < shaped.lakes.size(); ++i, ++body) {
+    if (!acts(shaped.lakes[i])) continue;
     const BodyName name{body, fmt::format("lake {}", i + 1), false};
     if (auto ok = shaper.add(shaped.lakes[i], name, lake_edits); !ok)
       return wrong_at("lake", i, std::move(ok));
   }
   double length_m = 0;
   for (std::size_t i = 0; i < shaped.rivers.size(); ++i) {
+    if (!acts(shaped.rivers[i])) continue;
     if (auto ok = add_length(shaped.rivers[i].points_m, "rivers", kMaxRiversM, length_m); !ok)
       return wrong_at("river", i, std::move(ok));
   }
@@ -247,6 +279,7 @@ Shaped add_water(const World& world, Shaper& shaper) {
   if (rivers.order.size() < shaped.rivers.size())
     return wrong_at("river", 0, refused("points_m", "rivers end in each other in a circle"));
   for (const std::size_t i : rivers.order) {
+    if (!acts(shaped.rivers[i])) continue;
     const BodyName name{body + static_cast<WaterBody>(i), fmt::format("river {}", i + 1),
                         rivers.flows_on[i]};
     if (auto ok = shaper.add(shaped.rivers[i], name, river_edits); !ok)
@@ -262,7 +295,11 @@ bool operator==(const Stamp& a, const Stamp& b) {
   return a.image == b.image && content(a) == content(b) && a.centre_m == b.centre_m &&
          a.size_m == b.size_m && a.turn_deg == b.turn_deg && a.base_m == b.base_m &&
          a.height_m == b.height_m && a.border_m == b.border_m && a.no_data == b.no_data &&
-         a.mode == b.mode && a.unit == b.unit;
+         a.mode == b.mode && a.unit == b.unit && a.strength == b.strength &&
+         a.enabled == b.enabled && a.mask == b.mask && a.min_height_m == b.min_height_m &&
+         a.max_height_m == b.max_height_m && a.height_fade_m == b.height_fade_m &&
+         a.min_slope_deg == b.min_slope_deg && a.max_slope_deg == b.max_slope_deg &&
+         a.slope_fade_deg == b.slope_fade_deg;
 }
 
 std::pair<float, float> numbers_of(const Stamp& stamp) {

@@ -4,6 +4,7 @@
 // immutable in use, any thread. They read no files (files/shaped_file.hpp). docs/world-files.md.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -27,8 +28,9 @@ namespace psygen::world {
 
 struct World;
 
-// A stamp adds its heights to the ground, or replaces the ground by them.
-inline constexpr std::array<std::string_view, 2> kStampModes{"add", "set"};
+// A stamp adds its heights to the ground, replaces the ground by them, or takes the higher or the
+// lower of both.
+inline constexpr std::array<std::string_view, 4> kStampModes{"add", "set", "highest", "lowest"};
 // The numbers of its image are grey, from black to white, or heights in metres.
 inline constexpr std::array<std::string_view, 2> kStampUnits{"grey", "m"};
 
@@ -46,6 +48,15 @@ struct Stamp {
       std::numeric_limits<double>::infinity();  // number without height; infinite: none
   std::string mode{kStampModes[0]};
   std::string unit{kStampUnits[0]};
+  double strength = 1;  // fraction of the change of the ground
+  bool enabled = true;  // else it changes nothing
+  // It acts only here, as models/ground/ground_mask.hpp says. The mask has no kinds of ground. If
+  // its area is all 0, its image covers the rectangle of the stamp.
+  ScatterMask mask;
+  double min_height_m = -std::numeric_limits<double>::infinity();
+  double max_height_m = std::numeric_limits<double>::infinity();
+  double height_fade_m = 20;
+  double min_slope_deg = 0, max_slope_deg = 90, slope_fade_deg = 10;
 
   bool is_in_metres() const { return unit == kStampUnits[1]; }
   // True if a number of the image is a height.
@@ -63,8 +74,21 @@ struct Road {
   double border_m = 6;      // on both sides: width of the transition to the ground
   double smoothing_m = 30;  // heights are averaged over this distance
   double clear_m = 1;       // on both sides, without models
+  double strength = 1;      // fraction of the change of the ground
+  bool enabled = true;      // else there is no road
   friend bool operator==(const Road&, const Road&) = default;
 };
+
+// True if a shape may change the world. A road of strength 0 still has its surface.
+inline bool acts(const Stamp& stamp) {
+  return stamp.enabled && stamp.strength > 0;
+}
+inline bool acts(const auto& shape) {
+  return shape.enabled;
+}
+inline bool any_acts(const auto& shapes) {
+  return std::ranges::any_of(shapes, [](const auto& shape) { return acts(shape); });
+}
 
 // Limits of a file. Points of a road are at least kMinRoadStepM apart.
 inline constexpr std::size_t kMaxStamps = 64, kMaxRoads = 64, kMaxRoadPoints = 1000;
@@ -83,9 +107,12 @@ struct ShapedGround {
   std::shared_ptr<const models::EditLayer> layer;
   // Sentences about doubtful rivers, lakes and roads, made with the layer.
   std::vector<std::string> warnings;
-  bool empty() const { return stamps.empty() && roads.empty() && lakes.empty() && rivers.empty(); }
+  // True if none of its shapes acts.
+  bool empty() const {
+    return !any_acts(stamps) && !any_acts(roads) && !any_acts(lakes) && !any_acts(rivers);
+  }
   // True if it may have water above the sea.
-  bool has_water() const { return network || !lakes.empty() || !rivers.empty(); }
+  bool has_water() const { return network || any_acts(lakes) || any_acts(rivers); }
   friend bool operator==(const ShapedGround& a, const ShapedGround& b) {
     return a.network == b.network && a.erosion == b.erosion && a.stamps == b.stamps &&
            a.roads == b.roads && a.lakes == b.lakes && a.rivers == b.rivers;

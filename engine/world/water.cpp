@@ -82,8 +82,10 @@ std::uint64_t bodies_hash_in(const World& world, core::BlockCoord block) {
 }
 
 std::uint64_t bodies_hash(const std::vector<Lake>& lakes) {
-  std::uint64_t hash = core::mix64(lakes.size());
+  const auto count = std::ranges::count(lakes, true, &Lake::enabled);
+  std::uint64_t hash = core::mix64(static_cast<std::uint64_t>(count));
   for (const Lake& lake : lakes) {
+    if (!lake.enabled) continue;
     hash = with_points(hash, lake.points_m);
     for (const double v :
          {lake.centre_m.x, lake.centre_m.y, lake.radius_m, lake.spill_m.value_or(0),
@@ -94,8 +96,10 @@ std::uint64_t bodies_hash(const std::vector<Lake>& lakes) {
 }
 
 std::uint64_t bodies_hash(const std::vector<River>& rivers) {
-  std::uint64_t hash = core::mix64(rivers.size());
+  const auto count = std::ranges::count(rivers, true, &River::enabled);
+  std::uint64_t hash = core::mix64(static_cast<std::uint64_t>(count));
   for (const River& river : rivers) {
+    if (!river.enabled) continue;
     hash = with_points(hash, river.points_m);
     for (const auto* list : {&river.width_m, &river.depth_m, &river.discharge_m3_s}) {
       hash = core::combine(hash, list->size());

@@ -74,7 +74,7 @@ WaterPoint water_at(const World& world, const core::WorldPosition& at);
 
 // A hash of the lakes and rivers of the world's function that reach a block; 0: none does.
 std::uint64_t bodies_hash_in(const World& world, core::BlockCoord block);
-// Hashes of all that a file says about lakes, and about rivers.
+// Hashes of all that a file says about enabled lakes, and about enabled rivers.
 std::uint64_t bodies_hash(const std::vector<Lake>& lakes);
 std::uint64_t bodies_hash(const std::vector<River>& rivers);
 

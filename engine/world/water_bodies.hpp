@@ -21,6 +21,7 @@ struct River {
   std::vector<double> discharge_m3_s;
   double bank_m = 6;        // on both sides: width of the slope up to the ground; more in deep cuts
   double smoothing_m = 20;  // steps of the surface are spread over this distance
+  bool enabled = true;      // of a world file: else there is no river
   friend bool operator==(const River&, const River&) = default;
 };
 
@@ -32,6 +33,7 @@ struct Lake {
   std::optional<double> spill_m;  // height of the surface; none: the lowest ground of the outline
   double depth_m = 4;             // of the bed, from shore_m inside the outline on
   double shore_m = 8;             // width of the slopes on both sides of the outline
+  bool enabled = true;            // of a world file: else there is no lake
   friend bool operator==(const Lake&, const Lake&) = default;
 };
 

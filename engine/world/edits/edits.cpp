@@ -329,12 +329,14 @@ core::Result<AddedWater> Edits::add_water(const World& world, std::string_view t
 }
 
 core::Result<AddedWater> Edits::add_river(const World& world, const River& river) {
+  if (!river.enabled) return core::invalid_argument("the river is not enabled");
   return add_water(world, "river", [&](const EditLayer& below, const BodyName& name) {
     return river_edits(world, below, river, name);
   });
 }
 
 core::Result<AddedWater> Edits::add_lake(const World& world, const Lake& lake) {
+  if (!lake.enabled) return core::invalid_argument("the lake is not enabled");
   return add_water(world, "lake", [&](const EditLayer& below, const BodyName& name) {
     return lake_edits(world, below, lake, name);
   });

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <string>
 #include <type_traits>
+#include <vector>
 
 #include "engine/models/model_type.hpp"
 #include "engine/world/files/table_reader.hpp"
@@ -37,6 +39,22 @@ struct FieldWriter {
       text.append(toml_vector(value)).append("\n");
   }
 };
+
+// Writes the fields that differ from those of `usual`.
+template <class T, class VisitFields>
+void write_changed(const T& now, const T& usual, const VisitFields& visit_fields,
+                   std::string& text) {
+  const auto lines_of = [&](const T& of) {
+    std::vector<std::string> lines;
+    visit_fields(of, [&](std::string_view key, const auto& value, const FieldSpec& spec) {
+      FieldWriter{lines.emplace_back()}(key, value, spec);
+    });
+    return lines;
+  };
+  const std::vector<std::string> lines = lines_of(now), defaults = lines_of(usual);
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    if (lines[i] != defaults[i]) text += lines[i];
+}
 
 // A field with these limits, and with a slider over the range `usual`.
 constexpr FieldSpec in(std::string_view unit, Limits limits, Limits usual, std::string_view doc) {
@@ -160,10 +178,10 @@ inline constexpr auto visit_place = [](auto& scatter, const auto& visit) {
         in("m", {0.1, 1000}, {1, 50}, "instances stand at most this far from water"));
 };
 
-// The numbers of a ScatterMask.
+// The numbers of a ScatterMask. Stamps have them too.
 inline constexpr auto visit_mask = [](auto& mask, const auto& visit) {
   visit("mask_noise_m", mask.noise_m,
-        in("m", {0, 1e6}, {0, 1000}, "size of the patches with instances; 0: no patches"));
+        in("m", {0, 1e6}, {0, 1000}, "size of the patches where it acts; 0: no patches"));
   visit("mask_share", mask.share, fraction("fraction of the ground that the patches cover"));
   visit("mask_patches", mask.patches,
         in("", {0, 1e6}, {0, 20},
@@ -191,6 +209,24 @@ inline constexpr FieldSpec kStampSize =
 inline constexpr FieldSpec kNoData =
     in("", {-std::numeric_limits<double>::max(), std::numeric_limits<double>::max()},
        {-32'768, 65'535}, "number in the image that marks pixels without height");
+
+// The strength of a Stamp or a Road.
+inline constexpr auto visit_strength = [](auto& shape, const auto& visit) {
+  visit("strength", shape.strength, fraction("fraction of the change of the ground"));
+};
+// The ranges of slow ground on which a Stamp acts.
+inline constexpr auto visit_ranges = [](auto& stamp, const auto& visit) {
+  visit("min_height_m", stamp.min_height_m, ground_height("lowest slow ground where it acts"));
+  visit("max_height_m", stamp.max_height_m, ground_height("highest slow ground where it acts"));
+  visit("height_fade_m", stamp.height_fade_m,
+        in("m", {0, 1e6}, {0, 100}, "it begins and ends over this range of heights"));
+  visit("min_slope_deg", stamp.min_slope_deg,
+        in("degrees", {0, 90}, {0, 60}, "least steep slow ground where it acts"));
+  visit("max_slope_deg", stamp.max_slope_deg,
+        in("degrees", {0, 90}, {0, 60}, "steepest slow ground where it acts"));
+  visit("slope_fade_deg", stamp.slope_fade_deg,
+        in("degrees", {0, 90}, {0, 30}, "it begins and ends over this range of slopes"));
+};
 
 // The numbers of a Road.
 inline constexpr auto visit_road = [](auto& road, const auto& visit) {

@@ -68,19 +68,16 @@ void read_grounds(TableReader& reader, ScatterMask& mask) {
                                fmt::join(kGroundNames, ", ")));
 }
 
-void read_area(TableReader& reader, const World& world, ScatterMask& mask) {
-  const bool given = reader.read("mask_area_m", mask.area_m, kMaskPlaces);
-  const bool has_area = reader.find("mask_area_m") != nullptr;
-  if (reader.find("mask_image") == nullptr) {
-    if (has_area) reader.problem("mask_area_m", "it is the area of mask_image, which is missing");
-  } else if (!has_area && world.is_endless()) {
-    reader.problem("mask_image", "an endless world also needs mask_area_m");
-  } else if (!has_area) {
-    mask.area_m = {0, 0, static_cast<double>(world.blocks_x) * world.block_size_m(),
-                   static_cast<double>(world.blocks_z) * world.block_size_m()};
-  } else if (given && !(mask.area_m[0] < mask.area_m[2] && mask.area_m[1] < mask.area_m[3])) {
-    reader.problem("mask_area_m", "it must be [x0, z0, x1, z1] with x0 below x1 and z0 below z1");
-  }
+// Without an area, the image covers the whole world.
+void read_scatter_mask(TableReader& reader, const Beside& beside, const World& world,
+                       ScatterMask& mask) {
+  read_mask(reader, beside, mask);
+  read_grounds(reader, mask);
+  if (reader.find("mask_image") == nullptr || reader.find("mask_area_m") != nullptr) return;
+  if (world.is_endless())
+    return reader.problem("mask_image", "an endless world also needs mask_area_m");
+  mask.area_m = {0, 0, static_cast<double>(world.blocks_x) * world.block_size_m(),
+                 static_cast<double>(world.blocks_z) * world.block_size_m()};
 }
 
 // The number of models of a [[scatter]] per block, or 0 after a problem. Numbers that are too large
@@ -108,10 +105,7 @@ double read_scatter(TableReader& reader, const models::Registry& registry, const
   visit_place(scatter, FieldReader{reader});
   if (scatter.min_height_m > scatter.max_height_m)
     reader.problem(reader.line(), "min_height_m", "it must not be above max_height_m");
-  visit_mask(scatter.mask, FieldReader{reader});
-  read_grounds(reader, scatter.mask);
-  scatter.mask.picture = read_picture(reader, "mask_image", beside, scatter.mask.image);
-  read_area(reader, world, scatter.mask);
+  read_scatter_mask(reader, beside, world, scatter.mask);
   ModelFields fields = read_model_fields(reader, registry[scatter.model], true);
   reader.finish();
   const bool allowed = check_model(fields, reader.problems()) && !too_many;
@@ -160,18 +154,28 @@ void read_place(TableReader& reader, const models::Registry& registry, const Wor
   places.push_back(place);
 }
 
+}  // namespace
+
+void read_mask(TableReader& reader, const Beside& beside, ScatterMask& mask) {
+  visit_mask(mask, FieldReader{reader});
+  mask.picture = read_picture(reader, "mask_image", beside, mask.image);
+  const bool given = reader.read("mask_area_m", mask.area_m, kMaskPlaces);
+  if (reader.find("mask_image") == nullptr && reader.find("mask_area_m") != nullptr)
+    reader.problem("mask_area_m", "it is the area of mask_image, which is missing");
+  else if (given && !(mask.area_m[0] < mask.area_m[2] && mask.area_m[1] < mask.area_m[3]))
+    reader.problem("mask_area_m", "it must be [x0, z0, x1, z1] with x0 below x1 and z0 below z1");
+}
+
 void write_mask(const ScatterMask& mask, std::string& text) {
   const auto out = std::back_inserter(text);
-  if (!mask.image.empty())
-    fmt::format_to(out, "mask_image = {}\nmask_area_m = {}\n", toml_string(mask.image),
-                   toml_vector(mask.area_m));
+  if (!mask.image.empty()) fmt::format_to(out, "mask_image = {}\n", toml_string(mask.image));
+  if (mask.area_m != std::array<double, 4>{})
+    fmt::format_to(out, "mask_area_m = {}\n", toml_vector(mask.area_m));
   const ScatterMask usual;
   if (mask.noise_m != usual.noise_m || mask.share != usual.share || mask.patches != usual.patches)
     visit_mask(mask, FieldWriter{text});
   if (mask.ground != 0) fmt::format_to(out, "on_ground = {}\n", toml_grounds(mask.ground));
 }
-
-}  // namespace
 
 void read_scatters(TableReader& root, const models::Registry& registry, const Beside& beside,
                    World& world) {

@@ -32,6 +32,11 @@ std::shared_ptr<const GreyPicture> read_picture(TableReader& reader, std::string
                                                 const Beside& beside, std::string& name,
                                                 Presence presence = Presence::kOptional);
 
+// Reads the numbers, the image and its area of a mask. An area of all 0 is missing.
+void read_mask(TableReader& reader, const Beside& beside, ScatterMask& mask);
+// Appends the keys of a mask that differ from their defaults.
+void write_mask(const ScatterMask& mask, std::string& out);
+
 // Allowed kinds of ground as TOML: ["grass", "dry"].
 std::string toml_grounds(std::uint32_t grounds);
 

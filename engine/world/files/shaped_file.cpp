@@ -59,6 +59,24 @@ std::string wrong_numbers(const Stamp& stamp) {
       least, largest, white);
 }
 
+// Writes the switch of a shape that is off.
+template <class Shape>
+void write_switch(const Shape& shape, std::string& text) {
+  if (!shape.enabled) text += "enabled = false\n";
+}
+
+// The strength and the switch of a stamp or a road.
+template <class Shape>
+void read_layer(TableReader& reader, Shape& shape) {
+  visit_strength(shape, FieldReader{reader});
+  reader.read("enabled", shape.enabled);
+}
+template <class Shape>
+void write_layer(const Shape& shape, std::string& text) {
+  write_changed(shape, Shape{}, visit_strength, text);
+  write_switch(shape, text);
+}
+
 Stamp read_stamp(TableReader& reader, const Beside& beside) {
   Stamp stamp;
   reader.read("centre_m", stamp.centre_m, kShapePlaces, Presence::kRequired);
@@ -67,6 +85,13 @@ Stamp read_stamp(TableReader& reader, const Beside& beside) {
   reader.read("no_data", stamp.no_data, {kNoData.hard.min, kNoData.hard.max});
   read_choice(reader, "mode", stamp.mode, kStampModes);
   read_choice(reader, "unit", stamp.unit, kStampUnits);
+  read_layer(reader, stamp);
+  read_mask(reader, beside, stamp.mask);
+  visit_ranges(stamp, FieldReader{reader});
+  if (stamp.min_height_m > stamp.max_height_m)
+    reader.problem("min_height_m", "it must not be above max_height_m");
+  if (stamp.min_slope_deg > stamp.max_slope_deg)
+    reader.problem("min_slope_deg", "it must not be above max_slope_deg");
   const double max_m = std::min(stamp.size_m.x, stamp.size_m.y) / 2;
   if (reader.find("border_m") == nullptr)
     stamp.border_m = std::min(stamp.border_m, max_m);
@@ -166,6 +191,7 @@ River read_river(TableReader& reader) {
     read_numbers(reader, key, numbers, spec, river.points_m.size());
   });
   visit_river(river, FieldReader{reader});
+  reader.read("enabled", river.enabled);
   reader.finish();
   return river;
 }
@@ -189,6 +215,7 @@ Lake read_lake(TableReader& reader) {
   if (double spill_m = 0; reader.read("spill_m", spill_m, {kSpill.hard.min, kSpill.hard.max}))
     lake.spill_m = spill_m;
   visit_lake(lake, FieldReader{reader});
+  reader.read("enabled", lake.enabled);
   reader.finish();
   return lake;
 }
@@ -197,6 +224,7 @@ Road read_road(TableReader& reader) {
   Road road;
   read_points(reader, road.points_m);
   visit_road(road, FieldReader{reader});
+  read_layer(reader, road);
   reader.finish();
   return road;
 }
@@ -250,10 +278,14 @@ void write_shaped(const ShapedGround& shaped, std::string& text) {
     fmt::format_to(out, "mode = {}\nunit = {}\n", toml_string(stamp.mode), toml_string(stamp.unit));
     if (std::isfinite(stamp.no_data))
       fmt::format_to(out, "no_data = {}\n", toml_number(stamp.no_data));
+    write_layer(stamp, text);
+    write_mask(stamp.mask, text);
+    write_changed(stamp, Stamp{}, visit_ranges, text);
   }
   for (const Road& road : shaped.roads) {
     fmt::format_to(out, "\n[[road]]\npoints_m = {}\n", toml_points(road.points_m));
     visit_road(road, FieldWriter{text});
+    write_layer(road, text);
   }
   for (const Lake& lake : shaped.lakes) {
     text += "\n[[lake]]\n";
@@ -264,6 +296,7 @@ void write_shaped(const ShapedGround& shaped, std::string& text) {
       fmt::format_to(out, "points_m = {}\n", toml_points(lake.points_m));
     if (lake.spill_m) fmt::format_to(out, "spill_m = {}\n", toml_number(*lake.spill_m));
     visit_lake(lake, FieldWriter{text});
+    write_switch(lake, text);
   }
   for (const River& river : shaped.rivers) {
     fmt::format_to(out, "\n[[river]]\npoints_m = {}\n", toml_points(river.points_m));
@@ -271,6 +304,7 @@ void write_shaped(const ShapedGround& shaped, std::string& text) {
       if (!numbers.empty()) fmt::format_to(out, "{} = {}\n", key, toml_numbers(numbers));
     });
     visit_river(river, FieldWriter{text});
+    write_switch(river, text);
   }
 }
 

@@ -269,15 +269,24 @@ class SchemaBuilder {
     return made;
   }
 
-  void add_mask(WorldSection& to, const ScatterMask& mask) const {
-    const bool whole_world = mask.area_m == std::array<double, 4>{};
-    add(to, "on_ground", {FieldKind::kToml, mask.ground == 0 ? "" : toml_grounds(mask.ground), {}},
-        "", without_limits("kinds of ground with instances: [\"grass\", \"forest\"]"));
-    add(to, "mask_image", text_value(mask.image, FieldKind::kImage), "",
-        without_limits("an image whose grey is the fraction of instances kept; white: all"));
-    add(to, "mask_area_m", {FieldKind::kToml, whole_world ? "" : toml_vector(mask.area_m), {}}, "",
-        without_limits("area of the image: [x0, z0, x1, z1]; default: the whole world", "m"));
+  void add_mask(WorldSection& to, const ScatterMask& mask, std::string_view image_doc,
+                std::string_view area_doc) const {
+    const bool has_area = mask.area_m != std::array<double, 4>{};
+    add(to, "mask_image", text_value(mask.image, FieldKind::kImage), "", without_limits(image_doc));
+    add(to, "mask_area_m", {FieldKind::kToml, has_area ? toml_vector(mask.area_m) : "", {}}, "",
+        without_limits(area_doc, "m"));
     add_all(to, mask, ScatterMask{}, visit_mask);
+  }
+
+  template <class Shape>
+  void add_switch(WorldSection& to, const Shape& shape) const {
+    add(to, "enabled", value_of(shape.enabled), "true",
+        without_limits("false: the world is as without it"));
+  }
+  template <class Shape>
+  void add_layer(WorldSection& to, const Shape& shape) const {
+    add_all(to, shape, Shape{}, visit_strength);
+    add_switch(to, shape);
   }
 
   // A section whose first field chooses a model type.
@@ -299,7 +308,11 @@ class SchemaBuilder {
         model_section(SectionKind::kScatter, path, type, "model type of the instances");
     add_required(made, "count", value_of(std::int64_t{s.count}), kCount);
     add_all(made, s, Scatter{}, visit_place);
-    add_mask(made, s.mask);
+    add(made, "on_ground",
+        {FieldKind::kToml, s.mask.ground == 0 ? "" : toml_grounds(s.mask.ground), {}}, "",
+        without_limits("kinds of ground with instances: [\"grass\", \"forest\"]"));
+    add_mask(made, s.mask, "an image whose grey is the fraction of instances kept; white: all",
+             "area of the image: [x0, z0, x1, z1]; default: the whole world");
     for (std::size_t i = 0; i < s.ranges.size(); ++i) {
       const models::ParameterSpec& spec = type.parameters()[i];
       if (spec.source == models::ParameterSource::kUser)
@@ -335,12 +348,17 @@ class SchemaBuilder {
         {FieldKind::kRealPair, toml_range(s.size_m.x, s.size_m.y), {s.size_m.x, s.size_m.y}},
         toml_number(usual.size_m.x), kStampSize);
     add_all(made, s, usual, visit_stamp);
-    add_choice(made, "mode", s.mode, usual.mode, kStampModes, "adds to the ground, or replaces it");
+    add_choice(made, "mode", s.mode, usual.mode, kStampModes,
+               "adds to the ground, replaces it, or takes the higher or the lower of both");
     add_choice(made, "unit", s.unit, usual.unit, kStampUnits,
                "numbers of the image: grey from black to white, or heights in metres");
     add(made, "no_data",
         {FieldKind::kToml, std::isfinite(s.no_data) ? toml_number(s.no_data) : "", {}}, "",
         kNoData);
+    add_layer(made, s);
+    add_mask(made, s.mask, "an image whose grey is the fraction of the change; white: all",
+             "area of the image: [x0, z0, x1, z1]; default: the rectangle of the stamp");
+    add_all(made, s, usual, visit_ranges);
     return made;
   }
 
@@ -350,6 +368,7 @@ class SchemaBuilder {
     add_required(made, "points_m", {FieldKind::kToml, toml_points(r.points_m), {}},
                  without_limits("points on the road: [[x, z], [x, z]]", "m"));
     add_all(made, r, Road{}, visit_road);
+    add_layer(made, r);
     return made;
   }
 
@@ -367,6 +386,7 @@ class SchemaBuilder {
     add(made, "spill_m", {FieldKind::kToml, l.spill_m ? toml_number(*l.spill_m) : "", {}}, "",
         kSpill);
     add_all(made, l, Lake{}, visit_lake);
+    add_switch(made, l);
     return made;
   }
 
@@ -389,6 +409,7 @@ class SchemaBuilder {
           add(made, key, {FieldKind::kToml, text_of(numbers), {}}, defaults[i++], spec);
         });
     add_all(made, r, usual, visit_river);
+    add_switch(made, r);
     return made;
   }
 

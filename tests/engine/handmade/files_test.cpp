@@ -331,6 +331,19 @@ TEST(HandmadeFiles, GiveStampsTheMetresOfAnImage) {
   EXPECT_TRUE(std::isnan(picture.values[3]));
 }
 
+TEST(HandmadeFiles, NameAndHashTheMaskOfAStamp) {
+  World w;
+  ASSERT_TRUE(image::write_exr(w.folder / "m.exr", {2, 2, {12, 13, 14, 15}}));
+  ASSERT_TRUE(image::write_png(w.folder / "s.png", image::make_image(2, 2, 255, 255, 255, 255)));
+  const auto world = w.read(std::string(kHead) + kStamp + "unit = \"m\"\nmask_image = \"s.png\"\n");
+  ASSERT_TRUE(world.has_value()) << world.error().message;
+  EXPECT_EQ(*files_named_by(*world, w.file()),
+            (std::vector<std::filesystem::path>{"m.exr", "s.png"}));
+  const auto hash = hash_of_files(*world, w.file());
+  ASSERT_TRUE(image::write_png(w.folder / "s.png", image::make_image(2, 2, 9, 9, 9, 255)));
+  EXPECT_NE(*hash_of_files(*world, w.file()), *hash);
+}
+
 TEST(HandmadeFiles, CountThePixelsOfMasksThatAreNoShares) {
   World w;
   const float infinite = std::numeric_limits<float>::infinity();

@@ -78,6 +78,20 @@ TEST(WorldIdentity, CoversStampsAndRoadsButNotEdits) {
   EXPECT_EQ(hash, identity_of(world, registry()).hash);
 }
 
+TEST(WorldIdentity, ShapesThatAreOffLeaveNoTrace) {
+  using world::testing::kShapes;
+  const auto hash_of = [](const std::string& tables) {
+    return identity_of(world::testing::shaped_world(tables), registry()).hash;
+  };
+  const std::string lake = "[[lake]]\ncentre_m = [400, 100]\nradius_m = 40\n";
+  const std::string river = "[[river]]\npoints_m = [[300, 200], [200, 160]]\n";
+  const std::string stamp = "[[stamp]]\nimage = \"white.png\"\ncentre_m = [100, 100]\n";
+  for (const std::string& shape : {lake, river, stamp}) {
+    EXPECT_NE(hash_of(kShapes + shape), hash_of(kShapes));
+    EXPECT_EQ(hash_of(kShapes + shape + "enabled = false\n"), hash_of(kShapes));
+  }
+}
+
 TEST(WorldIdentity, CoversErosionIfThereIsAny) {
   const auto hash_of = [](const std::string& tables) {
     return identity_of(world::testing::shaped_world(tables), registry()).hash;

@@ -193,6 +193,7 @@ TEST_F(WaterByHand, WrongWaterIsRejectedInOneSentenceAndChangesNothing) {
               HasSubstr("the river is not allowed: points_m: it must be 2 to 1000 points, not 1"));
   EXPECT_THAT(refusal_of_river([&](River& r) { r.points_m[2].x = kNoNumber; }),
               HasSubstr("point 2 is not finite"));
+  EXPECT_THAT(refusal_of_river([](River& r) { r.enabled = false; }), HasSubstr("not enabled"));
   EXPECT_THAT(refusal_of_river([](River& r) { r.width_m = {}; }), HasSubstr("width_m"));
   EXPECT_THAT(refusal_of_river([](River& r) { r.width_m = {0}; }), HasSubstr("0 is not allowed"));
   EXPECT_THAT(refusal_of_river([&](River& r) { r.depth_m = {kNoNumber}; }),

@@ -111,6 +111,77 @@ TEST(ShapedFile, NumbersThatAreNoHeightsAreRejectedWithTheirRangeAndTheKey) {
     EXPECT_THAT(error("[64, 32]", size), HasSubstr("w.toml:27: stamp[0].size_m")) << size;
 }
 
+const std::string kMasked =
+    "[[stamp]]\nimage = \"white.png\"\ncentre_m = [100, 100]\nmode = \"highest\"\n"
+    "strength = 0.5\nenabled = false\nmask_image = \"ramp.png\"\n"
+    "mask_area_m = [0, 10, 200, 180]\nmask_noise_m = 30\nmin_height_m = 5\nheight_fade_m = 2\n"
+    "max_slope_deg = 30\n[[road]]\npoints_m = [[10, 10], [40, 40]]\nstrength = 0.25\n";
+
+TEST(ShapedFile, MasksAndSwitchesReadBackEqualAndDefaultsAreNotWritten) {
+  const std::string off = "enabled = false\n";
+  const std::string tables = kMasked + "[[lake]]\ncentre_m = [400, 100]\nradius_m = 40\n" + off +
+                             "[[river]]\npoints_m = [[300, 200], [200, 160]]\n" + off;
+  const World world = shaped_world(tables);
+  const std::string text = write_world(world, registry());
+  const auto again = read_shaped_world("", text);
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_EQ(*again, world);
+  EXPECT_EQ(shape_hash(*again), shape_hash(world));
+  EXPECT_FALSE(world.shaped.lakes[0].enabled);
+  EXPECT_FALSE(world.shaped.rivers[0].enabled);
+  EXPECT_THAT(text, HasSubstr("min_height_m = 5\nheight_fade_m = 2\nmax_slope_deg = 30\n"));
+  const std::string plain = write_world(shaped_world(kShapes), registry());
+  for (const char* key : {"strength", "enabled", "mask_", "_fade_", "slope_deg = 90"})
+    EXPECT_EQ(plain.find(key), std::string::npos) << key;
+  const auto sections = world_schema(std::string(kSmallWorld) + tables, world, registry());
+  ASSERT_TRUE(sections) << sections.error().message;
+  const auto field = [&](std::string_view section, std::string_view key) {
+    return *find_field(*sections, TextPath{section, 0, key});
+  };
+  EXPECT_EQ(field("stamp", "mode").choices,
+            (std::vector<std::string>{"add", "set", "highest", "lowest"}));
+  EXPECT_EQ(field("stamp", "strength").value, "0.5");
+  EXPECT_EQ(field("stamp", "enabled").kind, FieldKind::kBoolean);
+  EXPECT_EQ(field("stamp", "mask_image").kind, FieldKind::kImage);
+  EXPECT_EQ(field("stamp", "mask_area_m").value, "[0, 10, 200, 180]");
+  EXPECT_EQ(field("stamp", "max_height_m").value, "");
+  EXPECT_EQ(field("stamp", "slope_fade_deg").usual, "10");
+  EXPECT_EQ(field("road", "strength").value, "0.25");
+  EXPECT_EQ(field("lake", "enabled").value, "false");
+  EXPECT_EQ(field("river", "enabled").usual, "true");
+}
+
+TEST(ShapedFile, BadMasksAndSwitchesAreRejectedWithLineAndField) {
+  const auto error = [](const std::string& from, const std::string& to) {
+    const auto world = read_shaped_world(replaced(kMasked, from, to));
+    return world ? "" : world.error().message;
+  };
+  for (const char* strength : {"-0.1", "1.01", "nan", "inf", "\"full\""})
+    EXPECT_THAT(error("strength = 0.5", std::string("strength = ") + strength),
+                HasSubstr("w.toml:28: stamp[0].strength"))
+        << strength;
+  EXPECT_THAT(error("strength = 0.25", "strength = 2"), HasSubstr("w.toml:38: road[0].strength"));
+  EXPECT_THAT(error("highest", "multiply"),
+              HasSubstr("w.toml:27: stamp[0].mode: it must be one of add, set, highest, lowest"));
+  EXPECT_THAT(error("enabled = false", "enabled = 0"), HasSubstr("w.toml:29: stamp[0].enabled"));
+  EXPECT_THAT(error("ramp.png", "no.png"),
+              HasSubstr("w.toml:30: stamp[0].mask_image: maps/no.png: there is no such file"));
+  EXPECT_THAT(error("mask_image = \"ramp.png\"\n", ""),
+              HasSubstr("w.toml:30: stamp[0].mask_area_m: it is the area of mask_image"));
+  EXPECT_THAT(error("[0, 10, 200, 180]", "[0, 180, 200, 10]"),
+              HasSubstr("w.toml:31: stamp[0].mask_area_m: it must be [x0, z0, x1, z1]"));
+  EXPECT_THAT(error("height_fade_m = 2", "max_height_m = 4"),
+              HasSubstr("w.toml:33: stamp[0].min_height_m: it must not be above max_height_m"));
+  EXPECT_THAT(error("height_fade_m = 2", "height_fade_m = -2"),
+              HasSubstr("w.toml:34: stamp[0].height_fade_m"));
+  EXPECT_THAT(error("max_slope_deg = 30", "max_slope_deg = 30\nmin_slope_deg = 31"),
+              HasSubstr("w.toml:36: stamp[0].min_slope_deg: it must not be above max_slope_deg"));
+  EXPECT_THAT(error("max_slope_deg = 30", "max_slope_deg = 91"),
+              HasSubstr("w.toml:35: stamp[0].max_slope_deg"));
+  EXPECT_THAT(error("strength = 0.25", "mask_noise_m = 3"), HasSubstr("road[0].mask_noise_m"));
+  EXPECT_THAT(error("[[road]]", "on_ground = [\"rock\"]\n[[road]]"), HasSubstr("on_ground"));
+}
+
 TEST(ShapedFile, EditorsSeeItsFields) {
   const std::string text = std::string(kSmallWorld) + kShapes;
   const auto sections = world_schema(text, shaped_world(kShapes), registry());
