@@ -231,6 +231,20 @@ TEST(Document, SectionsAreKeptAsPresets) {
   EXPECT_FALSE(document.save_preset({"sky"}, preset)) << "nothing of the sky is set";
 }
 
+TEST(Document, RandomisingLeavesTheSwitchOfAShapeAlone) {
+  const Place place(
+      "format = 1\n[world]\nname = \"roads\"\nseed = 5\nblocks = [8, 4]\n"
+      "[[road]]\npoints_m = [[20, 30], [140, 140]]\n");
+  Document document(place.options());
+  ASSERT_TRUE(good(document.open(place.file)));
+  for (unsigned seed = 0; seed < 8; ++seed) {
+    std::mt19937_64 random(seed);
+    EXPECT_TRUE(good(document.randomise({"road"}, random)));
+    EXPECT_TRUE(document.world().shaped.roads[0].enabled);
+  }
+  EXPECT_THAT(document.text(), ::testing::HasSubstr("strength = "));
+}
+
 TEST(Document, RandomisingIsOneStepAndLeavesLockedFieldsAlone) {
   Opened opened;
   Document& document = opened.document;
