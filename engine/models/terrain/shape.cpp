@@ -76,6 +76,7 @@ GroundDetail guide_detail(GroundDetail of_ground, double narrowest_cells) {
 // for the same lines, so squares of them are kept.
 class NetworkGuide final : public ErosionGuide {
  public:
+  static constexpr std::int64_t kSide = 32;  // lines of a square
   // `kept` may be null.
   NetworkGuide(const RiverNetwork& network, float unit_m, GroundDetail detail,
                core::ValueCache* kept)
@@ -84,11 +85,9 @@ class NetworkGuide final : public ErosionGuide {
   void heights(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows,
                double narrowest_cells, std::span<float> values, std::size_t stride) const override {
     const GroundDetail detail = guide_detail(detail_, narrowest_cells);
-    if (kept_ == nullptr || columns.size() < 2) {
-      evaluate(columns, rows, detail, values, stride);
-      return;
-    }
-    const std::int64_t step = columns[1] - columns[0];
+    const std::int64_t step = columns.size() < 2 ? 0 : columns[1] - columns[0];
+    if (kept_ == nullptr || !are_lines(columns, step) || !are_lines(rows, step))
+      return evaluate(columns, rows, detail, values, stride);
     const Squares x(columns, step), z(rows, step);
     for (std::int64_t j = z.first; j <= z.last; ++j) {
       for (std::int64_t i = x.first; i <= x.last; ++i)
@@ -97,7 +96,13 @@ class NetworkGuide final : public ErosionGuide {
   }
 
  private:
-  static constexpr std::int64_t kSide = 32;  // lines of a square
+  // Masks ask for the samples of heights, too. Lines are at least four cells apart.
+  static bool are_lines(std::span<const std::int64_t> axis, std::int64_t step) {
+    if (step < 4 || axis.front() % step != 0) return false;
+    return std::ranges::adjacent_find(axis, [step](std::int64_t a, std::int64_t b) {
+             return b - a != step;
+           }) == axis.end();
+  }
   struct Square {
     std::array<float, kSide * kSide> values;
     std::size_t bytes() const { return sizeof *this; }
@@ -213,7 +218,7 @@ void TerrainShape::evaluate(std::span<const std::int64_t> columns,
   if (stack != nullptr && stack->network != nullptr) {
     evaluate_network(columns, rows, values, stride, detail);
     stack->apply(scale(), columns, rows, values, stride, detail,
-                 NetworkGuide(*stack->network, metres, detail));
+                 NetworkGuide(*stack->network, metres, detail, nullptr));
   } else {
     noise.evaluate(columns, rows, values, stride, octaves(detail));
     if (stack == nullptr) return;
@@ -280,7 +285,10 @@ void TerrainShape::each_patch(LatticeSpan x, LatticeSpan z, GroundDetail detail,
   stack->network->each_tile({x.first, x.last}, {z.first, z.last}, detail, visit);
   const std::optional<ErosionFilter> erosion = filter(detail);
   if (!erosion || erosion->is_plain()) return;
-  const auto wide = static_cast<std::int64_t>(erosion->guide_margin_cells());
+  // Lines are made in whole squares.
+  const auto wide =
+      static_cast<std::int64_t>(erosion->guide_margin_cells() +
+                                static_cast<double>(NetworkGuide::kSide) * erosion->line_cells());
   stack->network->each_tile({x.first - wide, x.last + wide}, {z.first - wide, z.last + wide},
                             guide_detail(detail, erosion->lines_show_cells()), visit);
 }

@@ -147,7 +147,7 @@ TEST(NetworkGround, OfANodeReadsOnlyItsPatches) {
         const auto network =
             *models::RiverNetwork::create(before.settings(), before.frame(), store);
         layer.ground.network = network;
-        layer.ground.heights = nullptr;
+        layer.ground.heights = std::make_shared<core::ValueCache>(std::size_t{1} << 26);
         layer.ground.shapes.add(
             masked_stamp({{node.x * (1 << level), node.z * (1 << level)}, {10, 0, 10}}), kBlockM);
         World world = plain;
