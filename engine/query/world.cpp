@@ -93,6 +93,14 @@ core::Result<world::WaterPoint> World::water(const core::WorldPosition& position
   return world::water_at(*world_, *at, cache_.ground(at->block).at(local).height_m);
 }
 
+core::Result<std::optional<double>> World::river_discharge_m3_s(
+    const core::WorldPosition& position) {
+  const auto found = water(position);
+  if (!found) return tl::unexpected(found.error());
+  if (found->is_dry()) return std::nullopt;
+  return world::river_discharge_m3_s(*world_, position);
+}
+
 // A ray from a normalised origin, with a direction of unit length.
 struct World::Course {
   core::WorldPosition origin;

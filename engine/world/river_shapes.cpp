@@ -312,7 +312,8 @@ class RiverMaker {
       const std::size_t before = i > 0 ? i - 1 : 0, after = std::min(i + 1, n - 1);
       const double run_m = curve_[after].along_m - curve_[before].along_m;
       p.fall = run_m > 0 ? (surface_[before] - surface_[after]) / run_m : 0;
-      p.speed_m_s = speed_m_s(i);
+      p.discharge_m3_s = discharge_m3_s(i);
+      p.speed_m_s = speed_m_s(i, p.discharge_m3_s);
       const double drift_m = i > 0 ? curve_[i].along_m - curve_[i - 1].along_m : 0;
       foam = std::max(models::foam_of_fall(p.fall), foam - drift_m / 15);  // drifts 15 m
       p.foam = std::max(foam, 0.0);
@@ -321,16 +322,15 @@ class RiverMaker {
     warn_of_end();
   }
 
-  double speed_m_s(std::size_t i) const {
+  double discharge_m3_s(std::size_t i) const {
+    if (!river_.discharge_m3_s.empty()) return value_at(river_.discharge_m3_s, curve_[i]);
     const double width_m = 2 * samples_[i].half_m;
-    double discharge = 0;
-    if (!river_.discharge_m3_s.empty()) {
-      discharge = value_at(river_.discharge_m3_s, curve_[i]);
-    } else {
-      // Manning: √0.001 / 0.035 times the mean depth to the power of 2/3.
-      const double mean_m = samples_[i].depth_m * 2 / 3;
-      discharge = 0.9035 * models::exact_pow(mean_m, 2.0 / 3) * mean_m * width_m;
-    }
+    // Manning: √0.001 / 0.035 times the mean depth to the power of 2/3.
+    const double mean_m = samples_[i].depth_m * 2 / 3;
+    return 0.9035 * models::exact_pow(mean_m, 2.0 / 3) * mean_m * width_m;
+  }
+  double speed_m_s(std::size_t i, double discharge) const {
+    const double width_m = 2 * samples_[i].half_m;
     const double area_m2 = width_m * std::max(surface_[i] - bed_[i], 0.05) * 2 / 3;
     return std::min(discharge / area_m2, kFastestM_S);
   }

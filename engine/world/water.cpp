@@ -69,6 +69,15 @@ std::optional<WaterSurface> sea_surface(const World& world) {
   return sea;
 }
 
+std::optional<double> river_discharge_m3_s(const World& world, const core::WorldPosition& at) {
+  const core::RoundToNearest rounding;
+  const auto surface = water_surface(world, at);
+  if (!surface || surface->body == kSea) return std::nullopt;
+  const double block_m = world.block_size_m();
+  const core::WorldPosition place = core::normalised(at, block_m);
+  return world.layer()->ground.discharge_over(place.block, {place.local.x, place.local.z}, block_m);
+}
+
 std::uint64_t bodies_hash_in(const World& world, core::BlockCoord block) {
   if (!world.shaped.layer) return 0;
   std::uint64_t hash = 0;

@@ -72,6 +72,12 @@ WaterPoint water_at(const World& world, const core::WorldPosition& at, double gr
 // query::World::water() answers faster, for many places of a block.
 WaterPoint water_at(const World& world, const core::WorldPosition& at);
 
+// Returns the discharge in m³/s of the river whose water lies over a place, whether the ground
+// there is lower or higher; nothing: none does, but a lake or the sea may. That of a `[[river]]` is
+// in the file or follows from width and depth, that of a river network from the drainage area
+// (models::network::discharge_m3_s()). As fast as water_surface().
+std::optional<double> river_discharge_m3_s(const World& world, const core::WorldPosition& at);
+
 // A hash of the lakes and rivers of the world's function that reach a block; 0: none does.
 std::uint64_t bodies_hash_in(const World& world, core::BlockCoord block);
 // Hashes of all that a file says about enabled lakes, and about enabled rivers.

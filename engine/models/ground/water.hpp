@@ -26,6 +26,7 @@ struct RiverPoint {
   double speed_m_s = 0;        // mean over the cross-section
   double fall = 0;             // slope of the surface downstream, at least 0
   double foam = 0;             // 0 … 1
+  double discharge_m3_s = 0;   // tells, but shapes nothing
 };
 
 // A segment of the same river that may be nearer to a place than the piece's own ones.
@@ -97,7 +98,8 @@ struct BodySurface {
   glm::dvec2 flow_m_s{0.0};  // along x and z
   double foam = 0;           // 0 … 1
   std::uint32_t body = 0;
-  bool is_river = false;  // else a lake
+  bool is_river = false;      // else a lake
+  double discharge_m3_s = 0;  // of a river
   // Distance from the middle in widths of the body: 0 in the middle of a river, 0.5 at the border
   // of the water, −1 everywhere inside the outline of a lake.
   double widths = 0;

@@ -334,12 +334,43 @@ NetworkWater RiverNetwork::water_at(const core::WorldPosition& place) const {
   return water_at(in_patch(place));
 }
 
-std::optional<NetworkWater> RiverNetwork::inland_water_at(const core::WorldPosition& place) const {
-  const PatchPlace at = in_patch(place);
+std::optional<NetworkWater> RiverNetwork::inland_water_at(const PatchPlace& at) {
   if (!at.patch->may_have_water({at.x, at.z, at.x, at.z})) return std::nullopt;
   const NetworkWater water = water_at(at);
   if (!(water.depth_m > 0) || water.body == network::kSeaBody) return std::nullopt;
   return water;
+}
+
+std::optional<NetworkWater> RiverNetwork::inland_water_at(const core::WorldPosition& place) const {
+  return inland_water_at(in_patch(place));
+}
+
+std::optional<NetworkChannel> RiverNetwork::channel_at(const core::WorldPosition& place) const {
+  constexpr float kEqualM = 0.02F;
+  const PatchPlace at = in_patch(place);
+  const auto water = inland_water_at(at);
+  if (!water) return std::nullopt;
+  const network::Patch& patch = *at.patch;
+  const network::Box here{at.x, at.z, at.x, at.z};
+  // Channels run through lakes, at their level.
+  const bool in_lake = std::ranges::any_of(patch.lakes, [&](const network::Lake& lake) {
+    return std::abs(lake.level_m - water->surface_m) < kEqualM;
+  });
+  if (in_lake && patch.may_have_lake(here)) return std::nullopt;
+  std::optional<NetworkChannel> channel;
+  float least = 0.5F;  // distance in widths
+  patch.each_curve(here, [&](const network::Curve& c) {
+    const auto metres = [&](std::int32_t v, std::int32_t of) {
+      return static_cast<float>(v - of) * patch.unit_m;
+    };
+    const network::NearestPlace near =
+        network::nearest_place(c, metres(at.x, c.x), metres(at.z, c.z));
+    const float width_m = network::width_m(c, near.t), widths = near.distance_m / width_m;
+    if (widths > least) return;
+    least = widths;
+    channel = {double{c.discharge_m3_s}, double{width_m}};
+  });
+  return channel;
 }
 
 network::HeightRange RiverNetwork::bounds() const {

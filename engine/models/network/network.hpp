@@ -26,6 +26,11 @@ struct NetworkWater {
   std::uint32_t body = 0;  // a lake, a channel, or network::kSeaBody
 };
 
+// A channel at a place: mean discharge (network::discharge_m3_s()) and width of the water.
+struct NetworkChannel {
+  double discharge_m3_s = 0, width_m = 0;
+};
+
 class RiverNetwork {
  public:
   // Lattice points in cells of node level 0, ascending.
@@ -72,6 +77,9 @@ class RiverNetwork {
   // The same without the sea: nothing where no river and no lake is. Dry places take a tenth of
   // the time.
   std::optional<NetworkWater> inland_water_at(const core::WorldPosition& place) const;
+  // The channel whose water covers a place, the one whose middle is nearer in its widths; nothing
+  // on dry land, in lakes and in the sea. About 2 µs in water.
+  std::optional<NetworkChannel> channel_at(const core::WorldPosition& place) const;
   // False if inland_water_at() has nothing at any place in a square, its border included. May be
   // true although it has nothing; always for squares over more than four patches.
   bool may_have_water(const Cells& cells) const;
@@ -135,6 +143,7 @@ class RiverNetwork {
   };
   PatchPlace in_patch(const core::WorldPosition& place) const;
   static NetworkWater water_at(const PatchPlace& place);
+  static std::optional<NetworkWater> inland_water_at(const PatchPlace& place);
   // Calls visit(patch, samples, first column, first row) for parts of a lattice.
   template <class Visit>
   void each_part(const Lattice& at, GroundDetail detail, const Visit& visit) const;

@@ -12,7 +12,6 @@ constexpr double kReach = 1.08;      // of a kernel, in longest edges of its nod
 constexpr float kStreamGain = 1.5F;  // of a channel's kernel
 constexpr double kMaxWidthM = 150;   // of a channel
 constexpr float kWider = 1.25F;      // a channel so much wider takes in another
-constexpr double kRunoff = 0.02;     // m³/s from a km²
 
 // Channels at coarse levels are as dense as at the finest.
 std::uint32_t channel_area(const Scale& scale, int level) {
@@ -132,7 +131,7 @@ class Builder {
       Curve c;
       c.width0_m = width_m(up.area);
       c.width1_m = width_m(std::max(up.area, below));
-      c.discharge_m3_s = static_cast<float>(kRunoff * scale_.km2(up.area));
+      c.discharge_m3_s = static_cast<float>(discharge_m3_s(scale_.km2(up.area)));
       add(c, v, Path{half(v, up), {}, out.place, middle_m(up, v), water_m(v), out.height_m});
     }
     if (curves_.size() > begin + 1)
@@ -142,7 +141,7 @@ class Builder {
     c.head = true;
     c.width1_m = width_m(v.area);
     c.width0_m = 0.3F * c.width1_m;
-    c.discharge_m3_s = static_cast<float>(kRunoff * scale_.km2(v.area));
+    c.discharge_m3_s = static_cast<float>(discharge_m3_s(scale_.km2(v.area)));
     // The spring lies up the valley, if there is one.
     const int above = largest_inflow(i, j, 1);
     Path path{{}, {out.place[0] / 2, out.place[1] / 2}, out.place, water_m(v), 0, out.height_m};
@@ -232,29 +231,12 @@ class Builder {
     curves_.push_back(c);
   }
 
-  static float width_m(const Curve& c, float t) {
-    return c.width0_m + t * (c.width1_m - c.width0_m);
-  }
-  struct Nearest {
-    float distance_m, t;
-  };
-  // The nearest place of curve c to point s of curve q, as metres from c's node.
-  Nearest nearest(const Curve& c, const Curve& q, std::size_t s) const {
+  // The nearest place of curve c to point s of curve q.
+  NearestPlace nearest(const Curve& c, const Curve& q, std::size_t s) const {
     const auto offset = [&](std::int32_t to, std::int32_t from) {
       return static_cast<float>(to - from) * patch_.unit_m;
     };
-    const float x = offset(q.x, c.x) + q.px[s], z = offset(q.z, c.z) + q.pz[s];
-    float best = 1e30F, t = 0;
-    for (std::size_t k = 0; k < Curve::kChords; ++k) {
-      const float ex = c.px[k + 1] - c.px[k], ez = c.pz[k + 1] - c.pz[k];
-      const float dx = x - c.px[k], dz = z - c.pz[k];
-      const float f = std::clamp((dx * ex + dz * ez) * c.inverse_length2[k], 0.0F, 1.0F);
-      const float qx = dx - f * ex, qz = dz - f * ez, square = qx * qx + qz * qz;
-      if (square >= best) continue;
-      best = square;
-      t = (static_cast<float>(k) + f) / Curve::kChords;
-    }
-    return {std::sqrt(best), t};
+    return nearest_place(c, offset(q.x, c.x) + q.px[s], offset(q.z, c.z) + q.pz[s]);
   }
 
   // Gives arms of one node one height from where they touch.
@@ -266,9 +248,9 @@ class Builder {
         for (std::uint32_t o = begin; o < end; ++o) {
           const Curve& other = curves_[o];
           for (std::size_t s = 0; s < touch && o != k; ++s) {
-            const Nearest n = nearest(other, c, s);
-            const float wide =
-                width_m(other, n.t) + width_m(c, static_cast<float>(s) / Curve::kChords);
+            const NearestPlace n = nearest(other, c, s);
+            const float wide = network::width_m(other, n.t) +
+                               network::width_m(c, static_cast<float>(s) / Curve::kChords);
             if (n.distance_m < 0.5F * wide) touch = s;
           }
         }
@@ -302,9 +284,10 @@ class Builder {
         if (std::abs(dx) > most || std::abs(dz) > most) continue;
         for (std::size_t s = 0; s < std::min<std::size_t>(kept.chords + 1, Curve::kChords); ++s) {
           const float t = static_cast<float>(s) / Curve::kChords;
-          const Nearest n = nearest(wide, c, s);
+          const NearestPlace n = nearest(wide, c, s);
           const float level = level_m(wide, n.t);
-          if (n.distance_m > 0.5F * width_m(wide, n.t) || level > level_m(c, t) + 0.02F) continue;
+          if (n.distance_m > 0.5F * network::width_m(wide, n.t) || level > level_m(c, t) + 0.02F)
+            continue;
           lowest = s < kept.chords ? level : std::min(lowest, level);
           kept.chords = static_cast<std::uint32_t>(s);
           break;
@@ -363,6 +346,20 @@ std::size_t Patch::bytes() const {
 
 float level_m(const Curve& c, float t) {
   return std::max(bent_m(c, t), c.min_m);
+}
+
+NearestPlace nearest_place(const Curve& c, float x_m, float z_m) {
+  float best = 1e30F, t = 0;
+  for (std::size_t k = 0; k < c.chords; ++k) {
+    const float ex = c.px[k + 1] - c.px[k], ez = c.pz[k + 1] - c.pz[k];
+    const float dx = x_m - c.px[k], dz = z_m - c.pz[k];
+    const float f = std::clamp((dx * ex + dz * ez) * c.inverse_length2[k], 0.0F, 1.0F);
+    const float qx = dx - f * ex, qz = dz - f * ez, square = qx * qx + qz * qz;
+    if (square >= best) continue;
+    best = square;
+    t = (static_cast<float>(k) + f) / Curve::kChords;
+  }
+  return {std::sqrt(best), t};
 }
 
 float channel_width_m(double km2, double max_m) {

@@ -164,6 +164,12 @@ struct Patch {
   std::size_t bytes() const;
 };
 
+// Mean discharge of a river with this drainage area, in m³/s: 20 litres a second from a km², about
+// 630 mm of rain a year that does not evaporate. The speed of channels follows from it.
+constexpr double kRunoffM3_SKm2 = 0.02;
+constexpr double discharge_m3_s(double km2) {
+  return kRunoffM3_SKm2 * km2;
+}
 // Water as wide as a river with this drainage area, at most `max_m`.
 float channel_width_m(double km2, double max_m);
 // Depth of the middle of a channel, in metres and in widths.
@@ -171,8 +177,16 @@ constexpr float kBedM = 0.25F, kBedWidths = 0.07F;
 constexpr float channel_depth_m(float width_m) {
   return kBedM + kBedWidths * width_m;
 }
-// Height of the water of a curve, in metres; t: its parameter, 0 … 1.
+// Height and width of the water of a curve, in metres; t: its parameter, 0 … 1.
 float level_m(const Curve& c, float t);
+constexpr float width_m(const Curve& c, float t) {
+  return c.width0_m + t * (c.width1_m - c.width0_m);
+}
+// The place of a curve that is nearest to a point, which is in metres from the curve's node.
+struct NearestPlace {
+  float distance_m = 0, t = 0;
+};
+NearestPlace nearest_place(const Curve& c, float x_m, float z_m);
 // Width of the ground beside a channel that the channel lowers, and that it may raise.
 constexpr float kValleyM = 36, kLeveeM = 12, kBankWidths = 1.5F;
 constexpr float bank_m(float width_m) {

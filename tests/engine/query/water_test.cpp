@@ -149,5 +149,23 @@ TEST_F(WaterQuery, NoPathLeadsThroughAFastCurrent) {
   EXPECT_TRUE(reckless.reaches(east, west));
 }
 
+TEST_F(WaterQuery, TellsTheDischargeOfRiversAlone) {
+  std::size_t rivers = 0, still = 0, dry = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const core::WorldPosition place = at({1500 + 0.25 * (i % 1500), 1600 + 0.11 * i / 2}, 0);
+    const auto found = query_.river_discharge_m3_s(place);
+    const auto water = query_.water(place);
+    ASSERT_TRUE(found && water);
+    const bool is_river = water->body >= world::testing::kTheRiver;
+    ASSERT_EQ(found->has_value(), is_river && !water->is_dry());
+    ASSERT_EQ(*found, is_river ? world::river_discharge_m3_s(loaded_.world, place) : std::nullopt);
+    ++(water->is_dry() ? dry : is_river ? rivers : still);
+  }
+  EXPECT_GT(rivers, 30U);
+  EXPECT_GT(still, 100U);
+  EXPECT_GT(dry, 100U);
+  EXPECT_FALSE(query_.river_discharge_m3_s(at({-40, 0}, 0))) << "outside the world";
+}
+
 }  // namespace
 }  // namespace psygen::query

@@ -316,6 +316,40 @@ TEST(River, WrongCoursesAreRejectedInOneSentence) {
   }
 }
 
+TEST(River, TellsItsDischarge) {
+  const World& world = river_world();
+  const auto curve = river_curve(world, world.shaped.rivers[0]);
+  const auto discharge_at = [&](const World& of, glm::dvec2 at_m) {
+    return river_discharge_m3_s(of, position_in(of, at_m));
+  };
+  int rivers = 0, lakes = 0;
+  for (int i = 0; i <= 500; ++i) {
+    const glm::dvec2 at_m = middle_of(curve, i / 500.0).at_m;
+    const auto found = discharge_at(world, at_m);
+    const WaterBody body = water_at(world, position_in(world, at_m)).body;
+    ASSERT_EQ(found.has_value(), body == kTheRiver) << i;
+    ++(found ? rivers : lakes);
+    // The mean speed through two thirds of width times depth, below the fastest.
+    if (found) {
+      EXPECT_GT(*found, 0.2);
+      EXPECT_LT(*found, 40);
+    }
+  }
+  EXPECT_GT(rivers, 200);
+  EXPECT_GT(lakes, 50);
+  EXPECT_FALSE(discharge_at(world, curve.back().at_m - glm::dvec2(20, 0))) << "the sea";
+  EXPECT_FALSE(discharge_at(world, {2100, 1200})) << "dry land";
+  const std::string text = std::string(kBrookLand) + replaced(kBrookTable, "depth_m = 0.7",
+                                                              "depth_m = 0.7\ndischarge_m3_s = "
+                                                              "[3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 9]");
+  const World given = parsed(text);
+  EXPECT_NEAR(discharge_at(given, {1852, 1330}).value_or(0), 3, 1e-9);
+  const auto brook = river_curve(given, given.shaped.rivers[0]);
+  const auto near_mouth = discharge_at(given, middle_of(brook, 0.96).at_m);
+  EXPECT_GT(near_mouth.value_or(0), 4);
+  EXPECT_LT(near_mouth.value_or(0), 9);
+}
+
 TEST(River, DoubtfulCoursesGetAWarningWithTheirName) {
   const auto climbing = warnings("[[river]]\npoints_m = [[1560, 1655], [2150, 1750]]\n");
   ASSERT_FALSE(climbing.empty());

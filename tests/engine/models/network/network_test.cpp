@@ -523,5 +523,66 @@ TEST(RiverNetwork, AtTheEndsOfItsSettingsHasFiniteGround) {
   }
 }
 
+TEST(RiverNetwork, ChannelsHaveTheDischargeOfTheirDrainageArea) {
+  EXPECT_DOUBLE_EQ(network::discharge_m3_s(50), 1);
+  const auto network = network_of({.seed = 3, .sea_share = 0.2});
+  const auto patch = network->patch(network->tile_of(4000, 4000, {}));
+  std::size_t alone = 0;
+  float least = 1e30F, most = 0;
+  for (const network::Curve& c : patch->curves) {
+    constexpr std::size_t kMiddle = 2;
+    if (c.chords <= kMiddle || c.head) continue;
+    const double x_m = static_cast<double>(patch->x + c.x) / kUnitsPerCell + double{c.px[kMiddle]};
+    const double z_m = static_cast<double>(patch->z + c.z) / kUnitsPerCell + double{c.pz[kMiddle]};
+    const core::WorldPosition at = position_of(x_m, z_m);
+    const NetworkWater water = network->water_at(at);
+    const auto channel = network->channel_at(at);
+    if (!channel || water.body != c.body) continue;
+    const float width_m =
+        network::width_m(c, static_cast<float>(kMiddle) / network::Curve::kChords);
+    if (std::abs(channel->width_m - double{width_m}) > 1e-3) continue;  // another arm is nearer
+    ASSERT_EQ(channel->discharge_m3_s, double{c.discharge_m3_s});
+    // The speed is that of the discharge through the cross-section.
+    const double speed = std::min(
+        2.25 * channel->discharge_m3_s / double{width_m * network::channel_depth_m(width_m)}, 6.0);
+    const double flow = std::hypot(double{water.flow_m_s.x}, double{water.flow_m_s.y});
+    if (std::abs(flow - speed) < 0.02 * speed) ++alone;
+    least = std::min(least, c.discharge_m3_s);
+    most = std::max(most, c.discharge_m3_s);
+  }
+  EXPECT_GT(alone, 60U);
+  EXPECT_GE(double{least}, 0.97 * network::discharge_m3_s(network->settings().channel_km2));
+  EXPECT_GT(most, 20 * least);
+}
+
+TEST(RiverNetwork, HasNoChannelOnLandInLakesAndInTheSea) {
+  const auto network = network_of({.lake_share = 0.12, .sea_share = 0.2});
+  std::size_t channels = 0, lakes = 0;
+  for (const Place& place : places(150, 300'000)) {
+    for (std::int64_t i = 0; i < 30 * 30; ++i) {
+      const core::WorldPosition at = position_of(static_cast<double>(place[0] + 5 * (i % 30)),
+                                                 static_cast<double>(place[1] + 5 * (i / 30)));
+      const auto water = network->inland_water_at(at);
+      const auto channel = network->channel_at(at);
+      ASSERT_TRUE(water || !channel);
+      if (!water) continue;
+      ++(channel ? channels : lakes);
+      if (channel) {
+        ASSERT_GT(channel->discharge_m3_s, 0);
+      } else {
+        // Water without a channel is still, or has the level of a lake through which one runs.
+        const auto patch =
+            network->patch(network->tile_of(place[0] + 5 * (i % 30), place[1] + 5 * (i / 30), {}));
+        const bool is_level = std::ranges::any_of(patch->lakes, [&](const network::Lake& lake) {
+          return std::abs(lake.level_m - water->surface_m) < 0.02F;
+        });
+        ASSERT_TRUE(is_level || water->flow_m_s == glm::vec2(0.0F));
+      }
+    }
+  }
+  EXPECT_GT(channels, 200U);
+  EXPECT_GT(lakes, 500U);
+}
+
 }  // namespace
 }  // namespace psygen::models
