@@ -249,7 +249,7 @@ int ExportCommand::run() {
   models::Registry registry = models::make_standard_registry();
   std::optional<world::World> world;
   if (block_ || region_ || command_->count("--world") > 0) {
-    auto loaded = load_world(world_, registry);
+    auto loaded = load_world(world_, registry, true);
     if (!loaded) return fail_with(loaded.error());
     world = std::move(*loaded);
   }

@@ -76,7 +76,8 @@ class ModelsCommand final : public Command {
   int run() override {
     models::Registry registry = models::make_standard_registry();
     if (!world_.empty()) {
-      if (const auto world = load_world(world_, registry); !world) return fail_with(world.error());
+      if (const auto world = load_world(world_, registry, true); !world)
+        return fail_with(world.error());
     }
     return print(json_ ? json_of(registry) : table_of(registry));
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/core/data_file.hpp"
+#include "engine/core/log.hpp"
 #include "engine/core/nearest_word.hpp"
 #include "engine/handmade/files.hpp"
 #include "engine/world/files/world_file.hpp"
@@ -85,10 +86,16 @@ core::Result<fs::path> find_file(Shipped kind, const std::string& name) {
   return core::fail(core::ErrorCode::kIo, missing(kind, name, folders));
 }
 
-core::Result<world::World> load_world(const std::string& name, models::Registry& registry) {
+core::Result<world::World> load_world(const std::string& name, models::Registry& registry,
+                                      bool warns) {
   const auto file = find_file(Shipped::kWorld, name);
   if (!file) return tl::unexpected(file.error());
-  return world::load_world(*file, registry, &handmade::files());
+  auto world = world::load_world(*file, registry, &handmade::files());
+  if (world && warns) {
+    for (const std::string& warning : world->shaped.warnings)
+      core::log_warning(fmt::format("{}: {}", file->string(), warning));
+  }
+  return world;
 }
 
 core::Result<world::World> load_world_and_files(const std::string& name,

@@ -10,8 +10,8 @@
 #include "engine/models/kit/exact_math.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/world/curve.hpp"
-#include "engine/world/ground_below.hpp"
 #include "engine/world/river_course.hpp"
+#include "engine/world/road_crossings.hpp"
 #include "engine/world/road_shapes.hpp"
 #include "engine/world/water.hpp"
 #include "engine/world/water_shapes.hpp"
@@ -137,22 +137,9 @@ class Shaper {
     return {};
   }
 
-  // Warns where a road leads into water: it has no bridge.
   void check_roads() {
-    const GroundBelow shaped(world_, layer_);
-    for (std::size_t i = 0; i < world_.shaped.roads.size(); ++i) {
-      const Road& road = world_.shaped.roads[i];
-      if (!road.enabled) continue;
-      for (const CurvePoint& point : curve_through(road.points_m, road.width_m)) {
-        const auto water = shaped.water_over(point.at_m);
-        if (!water) continue;
-        warnings_.push_back(
-            fmt::format("road {}: it leads into {} at {:.1f}, {:.1f} m, and has no "
-                        "bridge there",
-                        i + 1, text_of(*water), point.at_m.x, point.at_m.y));
-        break;
-      }
-    }
+    for (std::string& warning : road_crossings(world_, layer_))
+      warnings_.push_back(std::move(warning));
   }
 
   models::EditLayer take() {
@@ -169,13 +156,6 @@ class Shaper {
     if (world_.contains(at.block)) return at;
     return core::fail(core::ErrorCode::kInvalidArgument,
                       fmt::format("{:g}, {:g} m is outside the world", at_m.x, at_m.y));
-  }
-
-  std::string text_of(const models::BodySurface& water) const {
-    if (water.body >= models::kFirstNetworkBody) return "water of the river network";
-    const std::size_t lakes = world_.shaped.lakes.size(), number = water.body - kSea;
-    return water.is_river ? fmt::format("river {}", number - lakes)
-                          : fmt::format("lake {}", number);
   }
 
   static std::shared_ptr<const models::Heightmap> map_of(const Stamp& stamp) {
@@ -329,7 +309,7 @@ tl::expected<void, ShapeError> shape_ground(World& world) {
   if (auto ok = add_all(world.shaped.stamps, "stamp", shaper); !ok) return ok;
   if (auto ok = add_all(world.shaped.roads, "road", shaper); !ok) return ok;
   if (auto ok = add_water(world, shaper); !ok) return ok;
-  if (world.shaped.has_water()) shaper.check_roads();
+  if (world.shaped.has_water() || world.water.exists()) shaper.check_roads();
   world.shaped.warnings = shaper.take_warnings();
   world.shaped.layer = std::make_shared<const models::EditLayer>(shaper.take());
   set_edits(world, nullptr);

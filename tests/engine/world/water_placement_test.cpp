@@ -151,17 +151,5 @@ TEST(WaterPlacement, KeysReadBackEqual) {
             std::string::npos);
 }
 
-TEST(WaterPlacement, ARoadIntoWaterGetsAWarning) {
-  const World world =
-      parsed(river_text() + "[[road]]\npoints_m = [[1860, 1650], [1866, 1700], [1880, 1760]]\n");
-  ASSERT_EQ(world.shaped.warnings.size(), 1U);
-  EXPECT_EQ(world.shaped.warnings[0].find("road 1: it leads into river 1 at 186"), 0U)
-      << world.shaped.warnings[0];
-  const World at_lake =
-      parsed(river_text() + "[[road]]\npoints_m = [[1740, 1780], [1740, 1690], [1750, 1590]]\n");
-  ASSERT_EQ(at_lake.shaped.warnings.size(), 1U);
-  EXPECT_EQ(at_lake.shaped.warnings[0].find("road 1: it leads into lake 1"), 0U);
-}
-
 }  // namespace
 }  // namespace psygen::world
