@@ -42,6 +42,27 @@ TEST(ShippedFiles, AUsersFileComesFirstAndAFolderIsIgnored) {
   EXPECT_EQ(run_in(folder, "models --world paper").code, 0);
 }
 
+TEST(ShippedFiles, CommandsThatLoadAWorldWarnOfRoadsThroughWater) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "own.toml") << R"(format = 1
+[world]
+name = "own"
+seed = 1
+blocks = [8, 8]
+[[lake]]
+centre_m = [200, 200]
+radius_m = 40
+[[road]]
+points_m = [[100, 200], [300, 200]]
+)";
+  for (const std::string command :
+       {"models --world own.toml", "export --world own.toml --block 1,1 --out own.glb"}) {
+    const Outcome outcome = run_in(folder, command);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_TRUE(mentions(outcome.err, "own.toml: road 1: it crosses lake 1 at ")) << outcome.err;
+  }
+}
+
 TEST(ShippedFiles, AMissingFileIsReportedWithSearchedFoldersAndShippedNames) {
   const TemporaryFolder folder;
   for (const std::string command :
