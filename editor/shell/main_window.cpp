@@ -40,6 +40,7 @@
 namespace psygen::editor {
 namespace {
 
+constexpr int kWarningsMs = 600;    // after the last change
 constexpr double kEyeHeightM = 24;  // of the first pose, above the ground
 
 core::CameraPose first_pose(const world::World& world) {
@@ -304,8 +305,26 @@ void MainWindow::connect_messages() {
   });
   connect(view_, &WorldView::world_rejected, messages_, &MessageLog::show_message);
   connect(tools_, &ViewTools::message_posted, messages_, &MessageLog::show_message);
+  // A drag changes the warnings many times; the last ones count.
+  warnings_timer_.setSingleShot(true);
+  warnings_timer_.setInterval(kWarningsMs);
+  connect(&document_, &Document::changed, &warnings_timer_, [this](Change what) {
+    if (what == Change::kFile) shown_warnings_.clear();
+    warnings_timer_.start();
+  });
+  connect(&warnings_timer_, &QTimer::timeout, this, &MainWindow::show_warnings);
   connect(&document_, &Document::modified_changed, this, &MainWindow::update_title);
   connect(&document_, &Document::file_changed, this, &MainWindow::update_title);
+}
+
+// Shows the warnings of the world that the last change brought.
+void MainWindow::show_warnings() {
+  const std::vector<std::string>& now = document_.world().shaped.warnings;
+  for (const std::string& warning : now) {
+    if (std::ranges::find(shown_warnings_, warning) == shown_warnings_.end())
+      messages_->show_message(tr("Warning: %1").arg(to_qstring(warning)));
+  }
+  shown_warnings_ = now;
 }
 
 core::Result<void> MainWindow::open_file(const std::filesystem::path& file) {

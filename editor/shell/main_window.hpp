@@ -3,6 +3,9 @@
 #pragma once
 
 #include <QMainWindow>
+#include <QTimer>
+#include <string>
+#include <vector>
 
 #include "editor/cost/edit_cost.hpp"
 #include "editor/document/document.hpp"
@@ -75,6 +78,7 @@ class MainWindow final : public QMainWindow {
   void add_view_menu();
   void add_edit_menu();
   void connect_messages();
+  void show_warnings();
   void restore_camera();
   QString camera_key() const;
   void restore_layout(const QByteArray& layout);
@@ -98,6 +102,8 @@ class MainWindow final : public QMainWindow {
   std::vector<QAction*> panel_commands_;
   QByteArray first_layout_;
   bool use_first_pose_ = false;
+  QTimer warnings_timer_;
+  std::vector<std::string> shown_warnings_;  // of the world, already in the messages
 };
 
 }  // namespace psygen::editor
