@@ -9,6 +9,7 @@ out=${1:-docs/images/editor}
 mkdir -p "$out"
 take() { build/release/bin/psygen_manual_pictures "$out" "$@"; }
 take dark 1280x800
+take dark 1280x800 rivers
 take light 1280x800 window
 take dark 1920x1080 window
 take light 1920x1080

@@ -9,6 +9,7 @@
 #include <QVBoxLayout>
 #include <QWheelEvent>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "ecs/ecs.hpp"
@@ -65,6 +66,17 @@ QString legend_text(MapColour colour) {
   return {};
 }
 
+// The colours of discharges, shores and divides.
+QString rivers_text() {
+  const auto line = [](const glm::vec3& colour, const QString& words) {
+    return swatch(QColor::fromRgbF(colour.x, colour.y, colour.z), words);
+  };
+  QString text = "<br>";
+  for (const double discharge : {0.01, 0.1, 1.0, 10.0})
+    text += line(river_style(discharge).colour, tr("%1&nbsp;m³/s").arg(discharge));
+  return text + line(kShoreColour, tr("shore")) + line(kDivideColour, tr("divide"));
+}
+
 }  // namespace
 
 CacheMap::CacheMap(QWidget* parent) : QWidget(parent) {
@@ -75,6 +87,11 @@ CacheMap::CacheMap(QWidget* parent) : QWidget(parent) {
 
 void CacheMap::set_colour(MapColour colour) {
   colour_ = colour;
+  update();
+}
+
+void CacheMap::set_radius_m(double radius_m) {
+  radius_m_ = std::clamp(radius_m, kMinRadiusM, kMaxRadiusM);
   update();
 }
 
@@ -145,6 +162,12 @@ void CacheMap::show_cells(std::vector<Cell> cells, double yaw, double horizontal
   update();
 }
 
+void CacheMap::show_rivers(std::shared_ptr<const RiverMap> rivers, glm::dvec2 from_camera_m) {
+  rivers_ = std::move(rivers);
+  rivers_from_camera_m_ = from_camera_m;
+  update();
+}
+
 double CacheMap::pixels_per_m() const {
   return std::min(width(), height()) / (2 * radius_m_);
 }
@@ -184,6 +207,7 @@ void CacheMap::paintEvent(QPaintEvent*) {
                        cell.size_m * scale);
     painter.fillRect(place.adjusted(0.5, 0.5, -0.5, -0.5), colour_of(cell));
   }
+  if (rivers_ != nullptr) paint_rivers(painter);
   // The camera, its view, and a scale.
   painter.setRenderHint(QPainter::Antialiasing);
   painter.setPen(QPen(Qt::white, 1.5));
@@ -199,6 +223,49 @@ void CacheMap::paintEvent(QPaintEvent*) {
   painter.setPen(QPen(palette().color(QPalette::Text), 2));
   painter.drawLine(left, left + QPointF(bar_m * scale, 0));
   painter.drawText(left - QPointF(0, 5), tr("%1 m").arg(bar_m));
+}
+
+// The origin of the painter is the camera. Lines of one look are drawn together.
+void CacheMap::paint_rivers(QPainter& painter) const {
+  painter.save();
+  painter.setRenderHint(QPainter::Antialiasing);
+  // A shade, so that all colours of nodes leave the lines readable.
+  const QRectF all(-width() / 2.0, -height() / 2.0, width(), height());
+  painter.fillRect(all, QColor(12, 20, 34, 150));
+  const double scale = pixels_per_m();
+  const auto point = [&](const glm::vec3& at) {
+    return QPointF(rivers_from_camera_m_.x + double{at.x}, rivers_from_camera_m_.y + double{at.z}) *
+           scale;
+  };
+  const auto add = [&](const RiverMap::Line& line, std::vector<QLineF>& lines) {
+    const QLineF shown(point(line.from), point(line.to));
+    if (QRectF(shown.p1(), shown.p2()).normalized().adjusted(-1, -1, 1, 1).intersects(all))
+      lines.push_back(shown);
+  };
+  const auto draw = [&](const std::vector<QLineF>& lines, const glm::vec3& colour, double width_px,
+                        Qt::PenStyle style = Qt::SolidLine) {
+    const QColor shown = QColor::fromRgbF(colour.x, colour.y, colour.z);
+    painter.setPen(QPen(shown, width_px, style, Qt::RoundCap));
+    painter.drawLines(lines.data(), static_cast<int>(lines.size()));
+  };
+  std::vector<QLineF> divides, shores;
+  for (const RiverMap::Line& divide : rivers_->divides)
+    add(divide, divides);
+  for (const RiverMap::Line& shore : rivers_->shores)
+    add(shore, shores);
+  draw(divides, kDivideColour, 1, Qt::DotLine);
+  draw(shores, kShoreColour, 1);
+  std::array<std::vector<QLineF>, kMaxRiverPx + 1> channels;
+  std::array<glm::vec3, kMaxRiverPx + 1> colours;
+  for (const RiverMap::Channel& channel : rivers_->channels) {
+    const RiverStyle style = river_style(double{channel.discharge_m3_s});
+    const auto px = static_cast<std::size_t>(style.width_px);
+    add(channel.line, channels[px]);
+    colours[px] = style.colour;
+  }
+  for (std::size_t px = 1; px < channels.size(); ++px)
+    draw(channels[px], colours[px], 0.6 * static_cast<double>(px) + 0.2);
+  painter.restore();
 }
 
 const CacheMap::Cell* CacheMap::cell_at(QPointF place) const {
@@ -247,9 +314,7 @@ bool CacheMap::event(QEvent* event) {
 }
 
 void CacheMap::wheelEvent(QWheelEvent* event) {
-  radius_m_ = std::clamp(radius_m_ * std::pow(0.8, event->angleDelta().y() / 120.0), kMinRadiusM,
-                         kMaxRadiusM);
-  update();
+  set_radius_m(radius_m_ * std::pow(0.8, event->angleDelta().y() / 120.0));
   event->accept();
 }
 
@@ -269,15 +334,28 @@ QWidget* make_cache_map_panel(WorldView& view) {
   layout->addWidget(colours);
   layout->addWidget(map, 1);
   layout->addWidget(legend);
-  QObject::connect(colours, &QComboBox::activated, panel, [map, legend](int index) {
+  const auto update_legend = [legend, colours, &view] {
+    const QString text = legend_text(static_cast<MapColour>(colours->currentIndex())) +
+                         (view.rivers().map() != nullptr ? rivers_text() : QString());
+    if (legend->text() != text) legend->setText(text);
+  };
+  QObject::connect(colours, &QComboBox::activated, panel, [map, update_legend](int index) {
     map->set_colour(static_cast<MapColour>(index));
-    legend->setText(legend_text(static_cast<MapColour>(index)));
+    update_legend();
   });
-  QObject::connect(timer, &QTimer::timeout, panel, [map, &view] {
+  QObject::connect(timer, &QTimer::timeout, panel, [map, update_legend, &view] {
     if (view.session() == nullptr) return;
     const scene::Scene& scene = view.session()->scene();
     map->note(scene);  // also while the map is hidden: it measures ages
-    if (map->isVisible()) map->show(scene);
+    if (!map->isVisible()) return;
+    map->show(scene);
+    const auto rivers = view.rivers().map();
+    const glm::dvec3 away = rivers == nullptr
+                                ? glm::dvec3(0.0)
+                                : core::offset_m(rivers->anchor.block, scene.camera().pose.position,
+                                                 scene.world().block_size_m());
+    map->show_rivers(rivers, {away.x, away.z});
+    update_legend();
   });
   timer->start(kMapUpdateMs);
   return panel;

@@ -4,12 +4,16 @@
 
 #include <QWidget>
 #include <cstdint>
+#include <memory>
 #include <unordered_map>
 #include <vector>
 
+#include "editor/view/river_map.hpp"
 #include "engine/core/coordinates.hpp"
 #include "engine/synthesis/mesh_key.hpp"
 #include "engine/visibility/quadtree.hpp"
+
+class QPainter;
 
 namespace psygen::scene {
 class Scene;
@@ -45,7 +49,12 @@ class CacheMap final : public QWidget {
   void show(const scene::Scene& scene);
   // Shows given nodes, coarse ones first; yaw and field of view in radians.
   void show_cells(std::vector<Cell> cells, double yaw, double horizontal_fov);
+  // Draws channels, shores and divides over the nodes; null: none. `from_camera_m`: x and z of the
+  // map's anchor from the camera.
+  void show_rivers(std::shared_ptr<const RiverMap> rivers, glm::dvec2 from_camera_m);
   void set_colour(MapColour colour);
+  // Half the smaller side of the map.
+  void set_radius_m(double radius_m);
   QSize sizeHint() const override { return {280, 280}; }
 
  protected:
@@ -58,6 +67,7 @@ class CacheMap final : public QWidget {
   QString tool_tip_of(const Cell& cell) const;
   const Cell* cell_at(QPointF place) const;
   double pixels_per_m() const;
+  void paint_rivers(QPainter& painter) const;
 
   struct KnownMesh {
     synthesis::MeshHandle mesh;
@@ -65,6 +75,8 @@ class CacheMap final : public QWidget {
   };
   std::vector<Cell> cells_;                             // coarse ones first
   std::unordered_map<std::uint64_t, KnownMesh> known_;  // by entity of a node
+  std::shared_ptr<const RiverMap> rivers_;
+  glm::dvec2 rivers_from_camera_m_{0.0};
   double radius_m_ = 1500, yaw_ = 0, fov_ = 0.9;
   MapColour colour_ = MapColour::kState;
 };

@@ -3,6 +3,7 @@
 #include <QPlainTextEdit>
 
 #include "editor/document/qt_text.hpp"
+#include "editor/panels/water_text.hpp"
 #include "editor/view/world_view.hpp"
 #include "engine/models/registry.hpp"
 #include "engine/scene/scene.hpp"
@@ -23,6 +24,12 @@ QString parameters_text(const models::ModelType& type, const models::Parameters&
   return text;
 }
 
+QString water_lines(const Selection& selection, const scene::Scene& scene) {
+  query::World queries(scene.world(), scene.registry());
+  const auto water = water_facts(queries, selection.at);
+  return water ? water_text(*water) + "\n\n" : QString();
+}
+
 QString describe(const Selection& selection, const scene::Scene& scene) {
   const models::ModelType& type = scene.registry()[selection.model];
   const models::Parameters& p = selection.parameters;
@@ -34,6 +41,7 @@ QString describe(const Selection& selection, const scene::Scene& scene) {
               .arg(selection.at.local.y, 0, 'f', 1)
               .arg(selection.at.local.z, 0, 'f', 1)
               .arg(selection.distance_m, 0, 'f', 1);
+  if (selection.kind == query::HitKind::kGround) text += water_lines(selection, scene);
   const int levels = type.level_count_of(p);
   text += tr("Level of detail: triangles, error, predicted time\n");
   for (int level = 0; level < levels; ++level) {

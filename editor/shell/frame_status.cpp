@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "editor/document/qt_text.hpp"
+#include "editor/panels/water_text.hpp"
 #include "editor/view/world_view.hpp"
 #include "engine/core/camera.hpp"
 #include "engine/render/types.hpp"
@@ -33,6 +34,10 @@ QString status_text(WorldView& view, double frame_ms) {
 }  // namespace
 
 void add_frame_status(QStatusBar& bar, WorldView& view) {
+  auto* water = new QLabel;
+  water->setObjectName("water");
+  water->setAccessibleName(tr("Water under the pointer"));
+  bar.addPermanentWidget(water);
   auto* label = new QLabel;
   bar.addPermanentWidget(label);
   struct Times {
@@ -52,8 +57,11 @@ void add_frame_status(QStatusBar& bar, WorldView& view) {
                     kSettledShownMs);
   });
   auto* timer = new QTimer(label);
-  QObject::connect(timer, &QTimer::timeout, label,
-                   [label, times, &view] { label->setText(status_text(view, times->frame_ms)); });
+  QObject::connect(timer, &QTimer::timeout, label, [label, water, times, &view] {
+    label->setText(status_text(view, times->frame_ms));
+    const auto under = view.water_under_pointer();
+    water->setText(under ? water_text(*under) : QString());
+  });
   timer->start(kUpdateMs);
 }
 

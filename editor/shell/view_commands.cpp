@@ -142,6 +142,17 @@ void add_grids(QMenu& menu, const EditorContext& context) {
   });
 }
 
+void add_rivers(QMenu& menu, const EditorContext& context) {
+  QAction* rivers =
+      menu.addAction(tr("River net&work"), tr("Ctrl+J"), &context.window, [context](bool on) {
+        context.view.rivers().set_on(on);
+        if (on && network_of(context.document.world()) == nullptr)
+          context.messages.show_message(
+              tr("The world has no river network. Add the section [rivers] to its file."));
+      });
+  rivers->setCheckable(true);
+}
+
 }  // namespace
 
 void add_image_commands(QMenu& menu, const EditorContext& context) {
@@ -160,6 +171,7 @@ void add_view_commands(QMenu& menu, const EditorContext& context) {
   add_debug_views(menu, context);
   add_model_alone(menu, context);
   add_grids(menu, context);
+  add_rivers(menu, context);
 }
 
 void add_pause_command(QMenu& menu, const EditorContext& context, bool paused) {

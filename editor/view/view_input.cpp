@@ -38,6 +38,9 @@ std::optional<MouseButton> button_of(Qt::MouseButton button) {
 }  // namespace
 
 bool ViewInput::take(const QEvent& event, double pixel_ratio, bool has_tool) {
+  if (event.type() == QEvent::MouseMove)
+    pointer_ = static_cast<const QMouseEvent&>(event).position() * pixel_ratio;
+  if (event.type() == QEvent::Leave) pointer_ = std::nullopt;
   if (has_tool && take_for_tool(event, pixel_ratio)) return true;
   switch (event.type()) {
     case QEvent::KeyPress:

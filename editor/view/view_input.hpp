@@ -39,6 +39,8 @@ class ViewInput {
   platform::InputState take_frame();
   // Position of a click of the left button in device pixels; nullopt: no click.
   std::optional<QPointF> take_click();
+  // The pointer in device pixels; nullopt: outside the window.
+  std::optional<QPointF> pointer() const { return pointer_; }
   // True while a key or a button is held.
   bool busy() const { return input_.held.any() || input_.buttons_held.any() || tool_holds_; }
   // Releases all keys and buttons, as when the window loses the keyboard.
@@ -52,7 +54,7 @@ class ViewInput {
 
   platform::InputState input_;
   QPointF last_, pressed_at_;
-  std::optional<QPointF> click_;
+  std::optional<QPointF> click_, pointer_;
   std::vector<ToolEvent> tool_events_;
   bool tool_holds_ = false;  // the left button
 };

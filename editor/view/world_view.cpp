@@ -5,6 +5,7 @@
 #include <QScreen>
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "engine/core/headroom.hpp"
@@ -256,6 +257,10 @@ void WorldView::write_overlays() {
   const auto grid = grid_.lines(scene.world(), camera_.pose().position);
   lines_.assign(grid.begin(), grid.end());
   const ViewProjection seen = view_projection();
+  rivers_.follow(scene.world(), seen.pose.position);
+  const double pixel =
+      2 * std::tan(double{seen.projection.vertical_fov} / 2) / std::max(1U, seen.size.height);
+  rivers_.add_lines(seen.pose.position, seen.block_m, pixel, lines_);
   write_selection_box(seen);
   if (tool_ == nullptr) return;
   overlay_.set(tool_->marks(), scene.world());
@@ -328,6 +333,15 @@ std::optional<QPointF> WorldView::pixel_of(glm::dvec2 at_m) const {
   const auto pixel = view_projection().pixel_of(on_surface(at_m, session_->scene().world()));
   if (!pixel) return std::nullopt;
   return QPointF(static_cast<double>(pixel->x), static_cast<double>(pixel->y)) / devicePixelRatio();
+}
+
+std::optional<WaterFacts> WorldView::water_under_pointer() {
+  const auto pointer = input_.pointer();
+  if (!session_ || !pointer) return std::nullopt;
+  const ViewProjection seen = view_projection();
+  probe_.ask(session_->scene(), seen.pose,
+             direction_of(*pointer, seen.size, seen.pose, seen.projection));
+  return probe_.answer();
 }
 
 ToolPoint WorldView::point_at(const ToolEvent& event) {

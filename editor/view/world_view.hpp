@@ -18,10 +18,12 @@
 
 #include "editor/view/grid_overlay.hpp"
 #include "editor/view/picking.hpp"
+#include "editor/view/river_overlay.hpp"
 #include "editor/view/tool_overlay.hpp"
 #include "editor/view/view_camera.hpp"
 #include "editor/view/view_input.hpp"
 #include "editor/view/view_tool.hpp"
+#include "editor/view/water_probe.hpp"
 #include "editor/view/window_surface.hpp"
 #include "engine/app/session.hpp"
 #include "engine/core/camera.hpp"
@@ -63,6 +65,11 @@ class WorldView final : public QWindow {
   void set_draft(bool draft) { draft_ = draft; }
   // The grid on the ground.
   GridOverlay& grid() { return grid_; }
+  // The river network as lines, in the view and in the cache map.
+  RiverOverlay& rivers() { return rivers_; }
+  const RiverOverlay& rivers() const { return rivers_; }
+  // The water under the pointer, a moment ago; nullopt: none, or the pointer is outside.
+  std::optional<WaterFacts> water_under_pointer();
   // Gives the left mouse button to a tool and draws its marks; null: the button selects. The
   // previous tool cancels its unfinished action. The caller keeps the tool alive until it is
   // replaced.
@@ -156,6 +163,8 @@ class WorldView final : public QWindow {
   // Since the text of the prepared world, and of the drawn world, was set.
   QElapsedTimer since_prepared_, since_taken_;
   GridOverlay grid_;
+  RiverOverlay rivers_;
+  WaterProbe probe_;
   PlaceCamera place_camera_;
 };
 

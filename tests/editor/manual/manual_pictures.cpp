@@ -1,8 +1,8 @@
 // Takes the images of the manual (docs/editor.md): uses the panels of a window and saves each as
 // NAME-THEME-WIDTH.jpg. Run by tools/editor_pictures.sh; takes minutes.
-//   psygen_manual_pictures FOLDER dark|light WIDTHxHEIGHT [window|tools|others]
-// `window`: only the window; `tools`: the tools of the view; `others`: export, comparison, attached
-// flight. It edits the document without saving.
+//   psygen_manual_pictures FOLDER dark|light WIDTHxHEIGHT [window|tools|rivers|others]
+// `window`: only the window; `tools`: the tools of the view; `rivers`: the river network of
+// watershed; `others`: export, comparison, attached flight. It edits the document without saving.
 #include <QAction>
 #include <QApplication>
 #include <QComboBox>
@@ -33,6 +33,7 @@
 #include "editor/gallery/compare_window.hpp"
 #include "editor/gallery/contact_sheet.hpp"
 #include "editor/gallery/library_panel.hpp"
+#include "editor/panels/cache_map.hpp"
 #include "editor/panels/properties_panel.hpp"
 #include "editor/pictures/picture_server.hpp"
 #include "editor/shell/command_palette.hpp"
@@ -41,6 +42,8 @@
 #include "editor/tools/view_tools.hpp"
 #include "engine/core/camera.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/synthesis/mesh_supply.hpp"
+#include "engine/world/world.hpp"
 #include "tests/editor/own_display.hpp"
 #include "tests/source_file.hpp"
 
@@ -50,8 +53,8 @@ namespace {
 struct Arguments {
   std::filesystem::path folder;
   QString theme;
-  std::string size;                 // of the display
-  std::string only;                 // "window", "tools", "others"; empty: all pictures
+  std::string size;  // of the display
+  std::string only;  // "window", "tools", "rivers", "others"; empty: all pictures but rivers
   std::filesystem::path home = {};  // for temporary files
 };
 
@@ -436,12 +439,39 @@ bool take_others(Photographer& take, MainWindow& window, const Arguments& argume
   return take.ok();
 }
 
+// The network of a world over the view and over the map.
+void take_rivers(Photographer& take, MainWindow& window) {
+  core::CameraPose pose;
+  pose.position = core::normalised({{}, {-9560, 0, 9950}}, take.document().world().block_size_m());
+  pose.position.local.y = world::surface_height_m(take.document().world(), pose.position) + 260;
+  pose.yaw = 0.2;
+  pose.pitch = -0.3;
+  window.view().camera().set_pose(pose);
+  rest(3000);
+  auto* dock = window.findChild<QDockWidget*>("map");
+  dock->raise();
+  dock->findChild<CacheMap*>()->set_radius_m(6000);
+  take.command("River network");
+  if (!wait_until([&] { return window.view().rivers().map() != nullptr; }, kLongestMs))
+    take.fail("the map of the rivers does not come");
+  const auto is_complete = [&] {
+    return window.view().session()->scene().meshes().outstanding() == 0;
+  };
+  for (int k = 0; k < 4; ++k) {
+    if (!wait_until(is_complete, kLongestMs)) take.fail("the view does not settle");
+    rest(3000);
+  }
+  take.window("rivers");
+  take.panel("map", "map-rivers");
+}
+
 bool take_all(MainWindow& window, const Arguments& arguments) {
   Photographer take(window, arguments.folder, arguments.theme);
   if (!wait_until([&] { return window.view().session() != nullptr; }, kLongestMs)) return false;
   take.settle([] {});
   if (arguments.only == "tools") return take_tools(take, window), take.ok();
   if (arguments.only == "others") return take_others(take, window, arguments);
+  if (arguments.only == "rivers") return take_rivers(take, window), take.ok();
   take_window(take);
   if (arguments.only == "window") return take.ok();
   take_fields(take);
@@ -468,8 +498,8 @@ int run(int argc, char** argv, Arguments arguments) {
   window.showFullScreen();
   window.use_first_pose();
   // A relative path, so that messages name the same file on every machine.
-  window.open_file(
-      std::filesystem::proximate(source_file(std::string("game/worlds/") + kFirstWorld + ".toml")));
+  const std::string name = arguments.only == "rivers" ? "watershed" : kFirstWorld;
+  window.open_file(std::filesystem::proximate(source_file("game/worlds/" + name + ".toml")));
   return take_all(window, arguments) ? 0 : 1;
 }
 
@@ -480,9 +510,9 @@ int main(int argc, char** argv) {
   using namespace psygen::editor;
   if (argc > 1 && std::strcmp(argv[1], kPicturesOption) == 0) return render_pictures({});
   if (argc < 4 || argc > 5) {
-    std::fprintf(
-        stderr,
-        "usage: psygen_manual_pictures FOLDER dark|light WIDTHxHEIGHT [window|tools|others]\n");
+    std::fprintf(stderr,
+                 "usage: psygen_manual_pictures FOLDER dark|light WIDTHxHEIGHT "
+                 "[window|tools|rivers|others]\n");
     return 2;
   }
   return run(argc, argv, {argv[1], argv[2], argv[3], argc > 4 ? argv[4] : ""});

@@ -1,0 +1,117 @@
+#include "editor/view/river_overlay.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "engine/core/headroom.hpp"
+#include "engine/models/edits.hpp"
+
+namespace psygen::editor {
+namespace {
+
+constexpr std::size_t kStoreBytes = std::size_t{16} << 20;
+constexpr std::size_t kMaxRiverLines = 48'000;  // leaves room for the grid and the tools
+// Height of lines above the water. They are also nearer to the camera, at the same pixels, because
+// the renderer draws far water by 2 % nearer (shaders/water_surface.vert).
+constexpr float kLiftM = 0.15F, kLiftPerM = 0.002F, kNearer = 0.03F, kNearerFromM = 40,
+                kNearerFullyM = 250;
+// Lines end at this distance, in halves of the finest square, and are thin from a third of it on:
+// farther ones would cover the horizon.
+constexpr double kSeenSquares = 3;
+
+}  // namespace
+
+std::shared_ptr<const models::RiverNetwork> network_of(const world::World& world) {
+  const auto layer = world.layer();
+  return layer ? layer->ground.network : nullptr;
+}
+
+RiverOverlay::~RiverOverlay() {
+  if (!next_.valid()) return;
+  *cancelled_ = true;
+  next_.wait();
+}
+
+void RiverOverlay::follow(const world::World& world, const core::WorldPosition& eye) {
+  take();
+  const auto network = on_ ? network_of(world) : nullptr;
+  if (network == nullptr) {
+    map_ = nullptr;
+    return;
+  }
+  if (next_.valid()) return;
+  if (map_ != nullptr && of_map_ == network->identity()) {
+    const glm::dvec3 away =
+        core::offset_m(map_->anchor.block, eye, world.block_size_m()) + map_->anchor.local;
+    if (std::max(std::abs(away.x), std::abs(away.z)) < 0.5 * map_->near_m) return;
+  }
+  start(world, eye);
+}
+
+void RiverOverlay::take() {
+  if (!next_.valid() || next_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+    return;
+  map_ = next_.get();
+  of_map_ = of_next_;
+}
+
+void RiverOverlay::start(const world::World& world, const core::WorldPosition& eye) {
+  const auto network = network_of(world);
+  of_next_ = network->identity();
+  if (network_ == nullptr || network_->identity() != of_next_) {
+    auto own = models::RiverNetwork::create(network->settings(), network->frame(),
+                                            std::make_shared<models::NetworkStore>(kStoreBytes));
+    if (!own) return;  // the world's one has the same settings
+    network_ = std::move(*own);
+  }
+  cancelled_ = std::make_shared<std::atomic<bool>>(false);
+  using Task = std::packaged_task<std::shared_ptr<const RiverMap>()>;
+  const glm::dvec2 blocks(static_cast<double>(world.blocks_x), static_cast<double>(world.blocks_z));
+  const auto task = std::make_shared<Task>([own = network_, eye, blocks, cancelled = cancelled_] {
+    return std::make_shared<const RiverMap>(make_river_map(*own, eye, blocks, *cancelled));
+  });
+  auto thread = core::start_thread([task] { (*task)(); });
+  if (!thread) return;  // another frame tries again
+  next_ = task->get_future();
+  thread->detach();
+}
+
+void RiverOverlay::add_lines(const core::WorldPosition& eye, double block_m, double pixel,
+                             std::vector<render::Line>& lines) const {
+  if (map_ == nullptr) return;
+  const std::size_t end = lines.size() + kMaxRiverLines;
+  const glm::vec3 from_eye(core::offset_m(map_->anchor.block, eye, block_m) + map_->anchor.local);
+  const auto seen_m = static_cast<float>(kSeenSquares * map_->near_m);
+  const auto lifted = [](glm::vec3 at) {
+    const float away_m = glm::length(at);
+    at.y += kLiftM + kLiftPerM * away_m;
+    return at * (1 - kNearer * glm::smoothstep(kNearerFromM, kNearerFullyM, away_m));
+  };
+  const auto add = [&](const RiverMap::Line& line, const glm::vec3& colour, int width_px) {
+    const glm::vec3 from = lifted(line.from + from_eye), to = lifted(line.to + from_eye);
+    // Parallel lines a pixel apart are a wide one.
+    const glm::vec3 middle = 0.5F * (from + to), across = glm::cross(to - from, middle);
+    const float length = glm::length(across), away_m = glm::length(middle);
+    if (away_m > seen_m) return;
+    if (3 * away_m > seen_m) width_px = std::min(width_px, 2);
+    const glm::vec3 step =
+        length > 0 ? across * (away_m * static_cast<float>(pixel) / length) : glm::vec3(0.0F);
+    for (int k = 0; k < width_px && lines.size() < end; ++k) {
+      const glm::vec3 aside =
+          step * (static_cast<float>(k) - 0.5F * static_cast<float>(width_px - 1));
+      lines.push_back({from + aside, to + aside, colour});
+    }
+  };
+  for (const RiverMap::Line& shore : map_->shores)
+    add(shore, kShoreColour, 1);
+  for (const RiverMap::Channel& channel : map_->channels) {
+    const RiverStyle style = river_style(double{channel.discharge_m3_s});
+    add(channel.line, style.colour, style.width_px);
+  }
+}
+
+}  // namespace psygen::editor

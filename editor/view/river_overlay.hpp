@@ -1,0 +1,53 @@
+// The river network of the view's world as lines over the view. Another thread makes the map of the
+// place around the camera (river_map.hpp); the lines of the previous map stay until then, so no
+// frame waits. Off at first. Main thread.
+#pragma once
+
+#include <atomic>
+#include <future>
+#include <memory>
+#include <vector>
+
+#include "editor/view/river_map.hpp"
+#include "engine/render/types.hpp"
+#include "engine/world/world.hpp"
+
+namespace psygen::editor {
+
+// The network of a world; null: it has none.
+std::shared_ptr<const models::RiverNetwork> network_of(const world::World& world);
+
+// One per view.
+class RiverOverlay {
+ public:
+  RiverOverlay() = default;
+  RiverOverlay(const RiverOverlay&) = delete;
+  RiverOverlay& operator=(const RiverOverlay&) = delete;
+  ~RiverOverlay();
+
+  void set_on(bool on) { on_ = on; }
+  bool is_on() const { return on_; }
+  // Follows world and camera. Starts another map if the network has changed or the camera has moved
+  // by a quarter of the finest square. Takes microseconds.
+  void follow(const world::World& world, const core::WorldPosition& eye);
+  // The newest map; null: off, no network, or not ready yet.
+  const std::shared_ptr<const RiverMap>& map() const { return map_; }
+  // True while another thread makes a map.
+  bool is_busy() const { return next_.valid(); }
+  // Appends the lines relative to a camera. `pixel`: the size of a pixel over its distance.
+  void add_lines(const core::WorldPosition& eye, double block_m, double pixel,
+                 std::vector<render::Line>& lines) const;
+
+ private:
+  void take();
+  void start(const world::World& world, const core::WorldPosition& eye);
+
+  bool on_ = false;
+  std::shared_ptr<const RiverMap> map_;
+  std::uint64_t of_map_ = 0, of_next_ = 0;               // identities of their networks
+  std::shared_ptr<const models::RiverNetwork> network_;  // with a store that the world does not use
+  std::future<std::shared_ptr<const RiverMap>> next_;
+  std::shared_ptr<std::atomic<bool>> cancelled_;
+};
+
+}  // namespace psygen::editor

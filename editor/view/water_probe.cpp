@@ -1,0 +1,93 @@
+#include "editor/view/water_probe.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "editor/view/surface_shape.hpp"
+#include "engine/core/headroom.hpp"
+#include "engine/models/registry.hpp"
+#include "engine/scene/scene.hpp"
+
+namespace psygen::editor {
+namespace {
+
+constexpr double kProbeFarM = 4000;
+constexpr std::size_t kProbeBytes = std::size_t{16} << 20;
+
+}  // namespace
+
+std::optional<WaterFacts> water_facts(query::World& queries, const core::WorldPosition& at) {
+  const auto water = queries.water(at);
+  if (!water || water->is_dry()) return std::nullopt;
+  WaterFacts facts;
+  facts.surface_m = water->surface_m;
+  facts.depth_m = water->depth_m;
+  facts.speed_m_s = std::hypot(double{water->flow_m_s.x}, double{water->flow_m_s.y});
+  if (water->body == world::kSea) return facts;
+  const auto discharge = queries.river_discharge_m3_s(at);
+  const bool is_river = discharge && discharge->has_value();
+  facts.kind = is_river ? WaterKind::kRiver : WaterKind::kLake;
+  facts.discharge_m3_s = is_river ? **discharge : 0;
+  return facts;
+}
+
+// A copy of the ground and the water of a world, without its models and their registry, which the
+// scene may replace meanwhile.
+struct WaterProbe::Ground {
+  explicit Ground(const world::World& of)
+      : shape(of),
+        world([&] {
+          world::World bare = of;
+          bare.scatter.clear();
+          bare.places = {};
+          return bare;
+        }()),
+        registry(models::make_standard_registry()),
+        queries(world, registry, kProbeBytes) {}
+
+  SurfaceShape shape;
+  world::World world;
+  models::Registry registry;
+  query::World queries;
+};
+
+WaterProbe::~WaterProbe() {
+  if (next_.valid()) next_.wait();
+}
+
+void WaterProbe::ask(const scene::Scene& scene, const core::CameraPose& pose,
+                     const glm::dvec3& direction) {
+  answer();
+  if (next_.valid()) return;
+  if (!world::has_water(scene.world())) {
+    answer_ = std::nullopt;
+    return;
+  }
+  if (ground_ == nullptr || !(ground_->shape == SurfaceShape(scene.world())))
+    ground_ = std::make_shared<Ground>(scene.world());
+  query::Ray ray;
+  ray.origin = pose.position;
+  ray.direction = direction;
+  ray.longest_m = kProbeFarM;
+  ray.models = ray.objects = false;
+  ray.water = true;
+  using Task = std::packaged_task<std::optional<WaterFacts>()>;
+  const auto task = std::make_shared<Task>([ground = ground_, ray]() -> std::optional<WaterFacts> {
+    const auto hit = ground->queries.cast(ray);
+    if (!hit || hit->kind != query::HitKind::kWater) return std::nullopt;
+    return water_facts(ground->queries, hit->position);
+  });
+  auto thread = core::start_thread([task] { (*task)(); });
+  if (!thread) return;
+  next_ = task->get_future();
+  thread->detach();
+}
+
+const std::optional<WaterFacts>& WaterProbe::answer() {
+  if (next_.valid() && next_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
+    answer_ = next_.get();
+  return answer_;
+}
+
+}  // namespace psygen::editor

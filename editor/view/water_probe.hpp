@@ -1,0 +1,57 @@
+// The water under the pointer: body, surface, depth, speed and discharge. Another thread casts the
+// ray, because the ground of a river network takes milliseconds a block; the newest question waits
+// until it is free. Main thread, except for water_facts().
+#pragma once
+
+#include <future>
+#include <memory>
+#include <optional>
+
+#include "engine/core/camera.hpp"
+#include "engine/query/world.hpp"
+
+namespace psygen::scene {
+class Scene;
+}
+
+namespace psygen::editor {
+
+// A body of water.
+enum class WaterKind : std::uint8_t { kSea, kLake, kRiver };
+
+// The water at a place.
+struct WaterFacts {
+  WaterKind kind = WaterKind::kSea;
+  double surface_m = 0, depth_m = 0;
+  double speed_m_s = 0;       // of the surface at the place
+  double discharge_m3_s = 0;  // of a river
+};
+
+// The water at a position, whose height is ignored; nullopt: dry, or outside the world.
+std::optional<WaterFacts> water_facts(query::World& queries, const core::WorldPosition& at);
+
+// One per view; it keeps a copy of the world's ground.
+class WaterProbe {
+ public:
+  WaterProbe() = default;
+  WaterProbe(const WaterProbe&) = delete;
+  WaterProbe& operator=(const WaterProbe&) = delete;
+  ~WaterProbe();
+
+  // Asks for the water that the ray from the camera hits before any ground, within 4 km. Does
+  // nothing while a question is in work. Takes microseconds.
+  void ask(const scene::Scene& scene, const core::CameraPose& pose, const glm::dvec3& direction);
+  // The newest answer; nullopt: no water. Takes microseconds.
+  const std::optional<WaterFacts>& answer();
+  // True while another thread works.
+  bool is_busy() const { return next_.valid(); }
+
+ private:
+  struct Ground;
+
+  std::shared_ptr<Ground> ground_;  // used by the other thread alone while next_ is valid
+  std::future<std::optional<WaterFacts>> next_;
+  std::optional<WaterFacts> answer_;
+};
+
+}  // namespace psygen::editor

@@ -1,0 +1,207 @@
+// The map of a river network, its lines over the view, and the water under the pointer.
+#include "editor/view/river_overlay.hpp"
+
+#include <gtest/gtest.h>
+
+#include <QDeadlineTimer>
+#include <QThread>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "editor/view/water_probe.hpp"
+#include "engine/world/water.hpp"
+#include "tests/engine/world/network_world.hpp"
+#include "tests/engine/world/river_world.hpp"
+
+namespace psygen::editor {
+namespace {
+
+using world::World;
+using world::testing::network_text;
+using world::testing::parsed;
+using world::testing::position_in;
+
+const World& network_world() {
+  static const World world = parsed(network_text());
+  return world;
+}
+
+RiverMap map_of(const World& world, glm::dvec2 at_m, glm::dvec2 blocks = glm::dvec2(0.0)) {
+  const std::atomic<bool> never{false};
+  return make_river_map(*network_of(world), position_in(world, at_m), blocks, never);
+}
+
+core::WorldPosition place(const World& world, const RiverMap& map, const glm::vec3& from_anchor) {
+  return core::normalised({map.anchor.block, glm::dvec3(from_anchor)}, world.block_size_m());
+}
+
+TEST(RiverMap, ItsNearChannelsLieInTheRiversOfTheWorld) {
+  const World& world = network_world();
+  const RiverMap map = map_of(world, {3000, 2000});
+  std::size_t near = 0, wet = 0, equal = 0;
+  for (const RiverMap::Channel& channel : map.channels) {
+    const glm::vec3 middle = 0.5F * (channel.line.from + channel.line.to);
+    if (std::max(std::abs(middle.x), std::abs(middle.z)) > 0.7 * map.near_m) continue;
+    ++near;
+    const core::WorldPosition at = place(world, map, middle);
+    const auto water = world::water_surface(world, at);
+    const bool in_sea = double{middle.y} < world.water.level_m + 0.1;
+    if (!water || (water->body == world::kSea && !in_sea)) continue;
+    ++wet;
+    EXPECT_NEAR(water->surface_m, double{middle.y}, 2);
+    const auto discharge = world::river_discharge_m3_s(world, at);
+    if (discharge && std::abs(*discharge - double{channel.discharge_m3_s}) < 1e-6) ++equal;
+  }
+  EXPECT_GT(near, 300U);
+  EXPECT_GT(20 * wet, 19 * near);
+  EXPECT_GT(10 * equal, 8 * near);
+}
+
+TEST(RiverMap, CoversSixteenTimesTheNearSquareWithBoundedWork) {
+  const World& world = network_world();
+  for (const glm::dvec2 at_m : {glm::dvec2(0, 0), glm::dvec2(-400'000, 1e6), glm::dvec2(3e7, 5)}) {
+    const RiverMap map = map_of(world, at_m);
+    double farthest_m = 0;
+    for (const RiverMap::Channel& channel : map.channels)
+      farthest_m = std::max(farthest_m, double{std::abs(channel.line.from.x)});
+    EXPECT_GT(farthest_m, 6 * map.near_m);
+    EXPECT_LT(farthest_m, 10 * map.near_m);
+    EXPECT_LT(map.channels.size(), 40'000U);
+    EXPECT_LT(map.shores.size(), 20'000U);
+    EXPECT_GT(map.shores.size(), 50U);
+    EXPECT_GT(map.divides.size(), 50U);
+    EXPECT_LT(map.divides.size(), 20'000U);
+  }
+}
+
+TEST(RiverMap, ItsShoresPartWaterFromLand) {
+  const World& world = network_world();
+  const RiverMap map = map_of(world, {3000, 2000});
+  std::size_t near = 0, parts = 0;
+  for (const RiverMap::Line& shore : map.shores) {
+    const glm::vec3 middle = 0.5F * (shore.from + shore.to), along = shore.to - shore.from;
+    if (std::max(std::abs(middle.x), std::abs(middle.z)) > 0.7 * map.near_m) continue;
+    if (glm::length(along) < 1) continue;
+    ++near;
+    const glm::vec3 across = 12.0F * glm::normalize(glm::vec3(-along.z, 0, along.x));
+    const auto depth_m = [&](const glm::vec3& at) {
+      return world::water_at(world, place(world, map, at)).depth_m;
+    };
+    if ((depth_m(middle + across) > 0) != (depth_m(middle - across) > 0)) ++parts;
+  }
+  ASSERT_GT(near, 30U);
+  EXPECT_GT(10 * parts, 8 * near) << parts << " of " << near;
+}
+
+TEST(RiverMap, OfABoundedWorldEndsAtItsBorder) {
+  const World& world = network_world();
+  const RiverMap map = map_of(world, {1000, 1000}, {40, 50});
+  ASSERT_FALSE(map.channels.empty());
+  const double block_m = world.block_size_m();
+  for (const RiverMap::Channel& channel : map.channels) {
+    const glm::dvec2 at_m = glm::dvec2(channel.line.from.x, channel.line.from.z) +
+                            glm::dvec2(map.anchor.block.x, map.anchor.block.z) * block_m;
+    EXPECT_GT(at_m.x, -200);
+    EXPECT_LT(at_m.x, 40 * block_m + 200);
+    EXPECT_GT(at_m.y, -200);
+    EXPECT_LT(at_m.y, 50 * block_m + 200);
+  }
+}
+
+TEST(RiverMap, ACancelledOneIsEmpty) {
+  const std::atomic<bool> always{true};
+  const RiverMap map = make_river_map(*network_of(network_world()), {}, glm::dvec2(0.0), always);
+  EXPECT_TRUE(map.channels.empty() && map.shores.empty() && map.divides.empty());
+}
+
+TEST(RiverStyle, WiderLinesAreLargerRivers) {
+  EXPECT_EQ(river_style(0).width_px, 1);
+  EXPECT_EQ(river_style(0.001).width_px, 1);
+  EXPECT_EQ(river_style(1000).width_px, kMaxRiverPx);
+  int before = 1;
+  for (double discharge = 0.001; discharge < 100; discharge *= 1.5) {
+    EXPECT_GE(river_style(discharge).width_px, before);
+    before = river_style(discharge).width_px;
+  }
+  EXPECT_NE(river_style(0.01).colour, river_style(0.3).colour);
+  EXPECT_NE(river_style(10).colour, river_style(0.3).colour);
+}
+
+// Follows until a map is there or the work ends.
+void follow(RiverOverlay& overlay, const World& world, const core::WorldPosition& eye) {
+  const QDeadlineTimer end(60'000);
+  do {
+    overlay.follow(world, eye);
+    QThread::msleep(2);
+  } while (overlay.is_busy() && !end.hasExpired());
+  overlay.follow(world, eye);
+}
+
+TEST(RiverOverlay, FollowsSwitchCameraAndWorld) {
+  const World& world = network_world();
+  const core::WorldPosition eye = position_in(world, {3000, 2000});
+  RiverOverlay overlay;
+  std::vector<render::Line> lines;
+  const auto add = [&](const core::WorldPosition& from) {
+    lines.clear();
+    overlay.add_lines(from, world.block_size_m(), 0.001, lines);
+  };
+  follow(overlay, world, eye);
+  EXPECT_EQ(overlay.map(), nullptr) << "off at first";
+  overlay.set_on(true);
+  overlay.follow(world, eye);
+  EXPECT_EQ(overlay.map(), nullptr) << "no frame waits for a map";
+  follow(overlay, world, eye);
+  ASSERT_NE(overlay.map(), nullptr);
+  add(eye);
+  EXPECT_GT(lines.size(), 1000U);
+  for (const render::Line& line : lines)
+    ASSERT_LT(double{glm::length(line.from)}, 3.5 * overlay.map()->near_m);
+  EXPECT_LE(lines.size(), 48'000U);
+  const auto before = overlay.map();
+  const glm::vec3 first = lines.front().from;
+  core::WorldPosition aside = eye;
+  aside.local.x += 10;
+  follow(overlay, world, aside);
+  EXPECT_EQ(overlay.map(), before) << "a small move keeps the map";
+  add(aside);
+  EXPECT_NEAR(double{first.x - lines.front().from.x}, 10, 0.6);
+  follow(overlay, world, position_in(world, {3000 + before->near_m, 2000}));
+  EXPECT_NE(overlay.map(), before);
+  const auto far = overlay.map();
+  const World other = parsed(world::testing::replaced(network_text(), "seed = 11", "seed = 12"));
+  follow(overlay, other, position_in(other, {3000 + before->near_m, 2000}));
+  EXPECT_NE(overlay.map(), far) << "another network";
+  follow(overlay, parsed(world::testing::kNetworkLand), eye);
+  EXPECT_EQ(overlay.map(), nullptr) << "no network";
+  add(eye);
+  EXPECT_TRUE(lines.empty());
+  overlay.set_on(false);
+  follow(overlay, world, eye);
+  EXPECT_EQ(overlay.map(), nullptr);
+}
+
+TEST(WaterFacts, TellBodyDepthSpeedAndDischarge) {
+  const World& world = world::testing::river_world();
+  query::World queries(world, world::testing::registry());
+  const auto at = [&](double x_m, double z_m) {
+    return water_facts(queries, position_in(world, {x_m, z_m}));
+  };
+  const auto river = at(2020, 1735), lake = at(1750, 1670), sea = at(1545, 1655);
+  ASSERT_TRUE(river && lake && sea);
+  EXPECT_EQ(river->kind, WaterKind::kRiver);
+  EXPECT_NEAR(river->depth_m, 0.6, 0.3);
+  EXPECT_GT(river->speed_m_s, 0.1);
+  EXPECT_EQ(river->discharge_m3_s,
+            *world::river_discharge_m3_s(world, position_in(world, {2020, 1735})));
+  EXPECT_EQ(lake->kind, WaterKind::kLake);
+  EXPECT_GT(lake->surface_m, world.water.level_m);
+  EXPECT_EQ(lake->discharge_m3_s, 0);
+  EXPECT_EQ(sea->kind, WaterKind::kSea);
+  EXPECT_EQ(sea->surface_m, world.water.level_m);
+  EXPECT_FALSE(at(2100, 1200)) << "dry";
+  EXPECT_FALSE(at(-50, 0)) << "outside";
+}
+
+}  // namespace
+}  // namespace psygen::editor

@@ -1,0 +1,105 @@
+// The overlay of a river network, the water under the pointer, and warnings of roads in a window.
+#include <QLabel>
+#include <QPlainTextEdit>
+
+#include "editor/panels/message_log.hpp"
+#include "engine/scene/statistics.hpp"
+#include "engine/synthesis/mesh_supply.hpp"
+#include "engine/world/water.hpp"
+#include "tests/editor/window/window_fixture.hpp"
+#include "tests/engine/world/network_world.hpp"
+
+namespace psygen::editor {
+namespace {
+
+class RiversInView : public EditorWindow {
+ protected:
+  std::string world_text() override { return world::testing::network_text(); }
+  // Looks straight down at the middle of a river, from 60 m above it.
+  void SetUp() override {
+    EditorWindow::SetUp();
+    const world::World& world = document().world();
+    const double block_m = world.block_size_m();
+    for (int i = 0; i < 400 * 400 && !river_; ++i) {
+      const core::WorldPosition at =
+          core::normalised({{20, 20}, {2.0 * (i % 400), 0, 2.0 * (i / 400)}}, block_m);
+      const auto discharge = world::river_discharge_m3_s(world, at);
+      if (discharge && *discharge > 0.03 && !world::water_at(world, at).is_dry()) river_ = at;
+    }
+    ASSERT_TRUE(river_);
+    core::CameraPose pose;
+    pose.position = *river_;
+    pose.position.local.y = world::surface_height_m(world, *river_) + 60;
+    pose.pitch = -1.5;
+    window_->view().camera().set_pose(pose);
+    settle_at_pose();
+  }
+  void settle_at_pose() {
+    const auto is_complete = [this] {
+      const scene::Scene& scene = window_->view().session()->scene();
+      return scene.meshes().outstanding() == 0 && scene.statistics().drawn.awaited == 0;
+    };
+    draw(10);
+    ASSERT_TRUE(QTest::qWaitFor(is_complete, kMaxMs));
+    draw(10);
+  }
+  QString messages() { return window_->findChild<MessageLog*>()->toPlainText(); }
+  std::optional<core::WorldPosition> river_;
+};
+
+TEST_F(RiversInView, TheNetworkIsSwitchedOnAndOff) {
+  const auto switch_on = [this] {
+    command("River network");
+    const auto is_there = [this] { return window_->view().rivers().map() != nullptr; };
+    ASSERT_TRUE(QTest::qWaitFor(is_there, kMaxMs));
+    settle_at_pose();
+  };
+  switch_on();
+  command("River network");
+  draw();
+  EXPECT_EQ(window_->view().rivers().map(), nullptr);
+  const image::Image plain = picture();
+  switch_on();
+  const image::Image on = picture();
+  EXPECT_GT(difference(on, plain), 0.0005);
+  EXPECT_LT(difference(on, plain), 0.2);
+  command("River network");
+  draw();
+  EXPECT_LT(difference(picture(), plain), 0.2 * difference(on, plain));
+}
+
+TEST_F(RiversInView, TheStatusBarTellsTheWaterUnderThePointer) {
+  auto* label = window_->findChild<QLabel*>("water");
+  ASSERT_NE(label, nullptr);
+  EXPECT_EQ(label->text(), "");
+  const auto pixel =
+      window_->view().pixel_of({river_->block.x * shown().block_size_m() + river_->local.x,
+                                river_->block.z * shown().block_size_m() + river_->local.z});
+  ASSERT_TRUE(pixel);
+  QTest::mouseMove(&window_->view(), pixel->toPoint());
+  ASSERT_TRUE(QTest::qWaitFor([&] { return !label->text().isEmpty(); }, kMaxMs));
+  EXPECT_TRUE(label->text().startsWith("River: surface ")) << label->text().toStdString();
+  EXPECT_TRUE(label->text().endsWith(" m³/s")) << label->text().toStdString();
+}
+
+TEST_F(RiversInView, ARoadThroughARiverGetsOneMessage) {
+  const std::string text = document().text();
+  const double x_m = river_->block.x * shown().block_size_m() + river_->local.x;
+  const double z_m = river_->block.z * shown().block_size_m() + river_->local.z;
+  const std::string road = "\n[[road]]\npoints_m = [[" + std::to_string(x_m - 60) + ", " +
+                           std::to_string(z_m - 50) + "], [" + std::to_string(x_m) + ", " +
+                           std::to_string(z_m) + "], [" + std::to_string(x_m + 60) + ", " +
+                           std::to_string(z_m + 50) + "]]\n";
+  EXPECT_FALSE(messages().contains("Warning"));
+  ASSERT_TRUE(document().set_text(text + road, "Road"));
+  ASSERT_TRUE(QTest::qWaitFor([this] { return messages().contains("Warning"); }, kMaxMs));
+  const QString once = messages();
+  EXPECT_TRUE(once.contains("Warning: road 1: it crosses a river of the network at "))
+      << once.toStdString();
+  ASSERT_TRUE(document().set_text(text + road + "# the same\n", "Comment"));
+  QTest::qWait(1500);
+  EXPECT_EQ(messages(), once) << "known warnings are not repeated";
+}
+
+}  // namespace
+}  // namespace psygen::editor
