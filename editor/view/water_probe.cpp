@@ -61,11 +61,18 @@ void WaterProbe::ask(const scene::Scene& scene, const core::CameraPose& pose,
   answer();
   if (next_.valid()) return;
   if (!world::has_water(scene.world())) {
+    ground_ = nullptr;
     answer_ = std::nullopt;
     return;
   }
-  if (ground_ == nullptr || !(ground_->shape == SurfaceShape(scene.world())))
-    ground_ = std::make_shared<Ground>(scene.world());
+  const core::WorldPosition& eye = pose.position;
+  const bool is_same = ground_ != nullptr && ground_->shape == SurfaceShape(scene.world());
+  if (is_same && asked_eye_.block == eye.block && asked_eye_.local == eye.local &&
+      asked_direction_ == direction)
+    return;
+  if (!is_same) ground_ = std::make_shared<Ground>(scene.world());
+  asked_eye_ = eye;
+  asked_direction_ = direction;
   query::Ray ray;
   ray.origin = pose.position;
   ray.direction = direction;
@@ -79,7 +86,10 @@ void WaterProbe::ask(const scene::Scene& scene, const core::CameraPose& pose,
     return water_facts(ground->queries, hit->position);
   });
   auto thread = core::start_thread([task] { (*task)(); });
-  if (!thread) return;
+  if (!thread) {
+    ground_ = nullptr;  // asks again
+    return;
+  }
   next_ = task->get_future();
   thread->detach();
 }

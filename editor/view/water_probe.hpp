@@ -39,7 +39,7 @@ class WaterProbe {
   ~WaterProbe();
 
   // Asks for the water that the ray from the camera hits before any ground, within 4 km. Does
-  // nothing while a question is in work. Takes microseconds.
+  // nothing while a question is in work, or if it is the last one again. Takes microseconds.
   void ask(const scene::Scene& scene, const core::CameraPose& pose, const glm::dvec3& direction);
   // The newest answer; nullopt: no water. Takes microseconds.
   const std::optional<WaterFacts>& answer();
@@ -51,6 +51,8 @@ class WaterProbe {
 
   std::shared_ptr<Ground> ground_;  // used by the other thread alone while next_ is valid
   std::future<std::optional<WaterFacts>> next_;
+  core::WorldPosition asked_eye_;  // of the last question
+  glm::dvec3 asked_direction_{0.0};
   std::optional<WaterFacts> answer_;
 };
 
