@@ -91,6 +91,7 @@ std::vector<std::string> road_crossings(const World& world, const models::EditLa
   std::vector<std::string> sentences;
   WaterOnRoads water(world, layer);
   for (std::size_t i = 0; i < world.shaped.roads.size(); ++i) {
+    if (!world.shaped.roads[i].enabled) continue;
     const auto line = curve_through(world.shaped.roads[i].points_m, kCrossingStepM);
     const std::vector<Stretch> found = stretches_of(line, water);
     for (std::size_t k = 0; k < std::min(found.size(), kMaxCrossings); ++k) {

@@ -64,9 +64,10 @@ BlockGround::BlockGround(const Parameters& terrain, core::BlockCoord block, std:
                                       ? shape_.stack->heights.get()
                                       : nullptr;
   const auto make = [this] { return KeptHeights{quantised_vertices()}; };
-  const auto kept = cache != nullptr ? cache->get<KeptHeights>(key_of(terrain, shape_, block), make)
-                                     : std::make_shared<const KeptHeights>(make());
-  heights_ = {kept, &kept->heights};
+  const auto found = cache != nullptr
+                         ? cache->get<KeptHeights>(key_of(terrain, shape_, block), make)
+                         : std::make_shared<const KeptHeights>(make());
+  heights_ = {found, &found->heights};
 }
 
 BlockGround::BlockGround(const Parameters& terrain, core::BlockCoord block,
@@ -170,11 +171,11 @@ namespace {
 
 // Where heights are kept, a place in the block costs no more than all of the block, once.
 BlockGround ground_at(const Parameters& terrain, core::BlockCoord block, glm::dvec2 local_m) {
-  const bool kept = terrain.edits() != nullptr && terrain.edits()->ground.heights != nullptr;
+  const bool keeps = terrain.edits() != nullptr && terrain.edits()->ground.heights != nullptr;
   const double block_m = terrain_block_size_m(terrain);
   const bool inside =
       local_m.x >= 0 && local_m.y >= 0 && local_m.x < block_m && local_m.y < block_m;
-  return {terrain, block, kept && inside ? std::size_t{kMaxTerrainSize} * kMaxTerrainSize : 1};
+  return {terrain, block, keeps && inside ? std::size_t{kMaxTerrainSize} * kMaxTerrainSize : 1};
 }
 
 }  // namespace

@@ -77,16 +77,16 @@ GroundDetail guide_detail(GroundDetail of_ground, double narrowest_cells) {
 class NetworkGuide final : public ErosionGuide {
  public:
   static constexpr std::int64_t kSide = 32;  // lines of a square
-  // `kept` may be null.
+  // `cache` may be null.
   NetworkGuide(const RiverNetwork& network, float unit_m, GroundDetail detail,
-               core::ValueCache* kept)
-      : network_(network), unit_m_(unit_m), detail_(detail), kept_(kept) {}
+               core::ValueCache* cache)
+      : network_(network), unit_m_(unit_m), detail_(detail), cache_(cache) {}
   bool follows_from_lines() const override { return true; }
   void heights(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows,
                double narrowest_cells, std::span<float> values, std::size_t stride) const override {
     const GroundDetail detail = guide_detail(detail_, narrowest_cells);
     const std::int64_t step = columns.size() < 2 ? 0 : columns[1] - columns[0];
-    if (kept_ == nullptr || !are_lines(columns, step) || !are_lines(rows, step))
+    if (cache_ == nullptr || !are_lines(columns, step) || !are_lines(rows, step))
       return evaluate(columns, rows, detail, values, stride);
     const Squares x(columns, step), z(rows, step);
     for (std::int64_t j = z.first; j <= z.last; ++j) {
@@ -134,7 +134,7 @@ class NetworkGuide final : public ErosionGuide {
     const std::uint64_t kind = core::combine(
         core::combine(network_.identity(), static_cast<std::uint64_t>(detail.level)),
         core::combine(static_cast<std::uint64_t>(step), std::bit_cast<std::uint32_t>(unit_m_)));
-    return kept_->get<Square>(
+    return cache_->get<Square>(
         {kKind, kind, static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(j)}, [&] {
           std::array<std::int64_t, kSide> x, z;
           for (std::int64_t k = 0; k < kSide; ++k) {
@@ -165,7 +165,7 @@ class NetworkGuide final : public ErosionGuide {
   const RiverNetwork& network_;
   float unit_m_;
   GroundDetail detail_;
-  core::ValueCache* kept_;
+  core::ValueCache* cache_;
 };
 
 // Octaves of the noise that are narrower than a network's nodes are detail on its land, with this
