@@ -268,6 +268,7 @@ bool SynthesisManager::wait_all(const std::function<bool()>& go_on, bool helps) 
 
 bool SynthesisManager::wait_for_threads(const std::function<bool()>& go_on, bool helps) {
   workshop_->waiting.store(true, std::memory_order_seq_cst);
+  helps = helps && remote_count() == 0;  // it would leave them nothing
   bool all = true;
   double asked_s = workshop_->clock();
   while (outstanding_in_threads() > 0 || publish_returned()) {

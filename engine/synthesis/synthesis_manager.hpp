@@ -114,7 +114,7 @@ class SynthesisManager {
   // if no local modeler is left to finish them (remote ones may still work), or once `go_on`
   // returns false. `go_on` is called about 50 times a second, but never with a virtual clock, which
   // waits for nothing. `helps`: the calling thread makes meshes of types that may run on a main
-  // thread meanwhile.
+  // thread meanwhile, unless there are remote modelers.
   bool wait_all(const std::function<bool()>& go_on = {}, bool helps = false);
   // Requires an empty plan. Blocks until all claimed requests are finished or abandoned, remote
   // ones included. Returns requests that remote modelers returned; no modeler makes them any more.
