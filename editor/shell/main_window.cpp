@@ -306,6 +306,7 @@ void MainWindow::connect_messages() {
   connect(view_, &WorldView::world_rejected, messages_, &MessageLog::show_message);
   connect(tools_, &ViewTools::message_posted, messages_, &MessageLog::show_message);
   // A drag changes the warnings many times; the last ones count.
+  warnings_timer_.setObjectName("warnings");
   warnings_timer_.setSingleShot(true);
   warnings_timer_.setInterval(kWarningsMs);
   connect(&document_, &Document::changed, &warnings_timer_, [this](Change what) {

@@ -102,7 +102,7 @@ class MainWindow final : public QMainWindow {
   std::vector<QAction*> panel_commands_;
   QByteArray first_layout_;
   bool use_first_pose_ = false;
-  QTimer warnings_timer_;
+  QTimer warnings_timer_{this};
   std::vector<std::string> shown_warnings_;  // of the world, already in the messages
 };
 
