@@ -3,7 +3,7 @@
 // evicted when memory is needed. The cost model, the planner, the modelers and the cache are
 // private parts with their own tests. Visibility and scene decide which meshes are wanted.
 //
-// Main thread only. Nothing blocks except wait() and the destructor.
+// Main thread only. Nothing blocks except wait(), help() and the destructor.
 #pragma once
 
 #include <cstdint>
@@ -130,7 +130,8 @@ class MeshSupply {
   // Waiting and statistics ----------------------------------------------------------------------
   // Blocks until every request is finished or abandoned; see SynthesisManager::wait_all().
   bool wait(const std::function<bool()>& go_on = {}) { return manager_->wait_all(go_on); }
-  // The same, and this thread makes meshes meanwhile.
+  // The same, and this thread makes meshes meanwhile, unless the clock is virtual or other ranks
+  // help.
   bool help(const std::function<bool()>& go_on = {}) { return manager_->wait_all(go_on, true); }
   // Number of planned requests that are not finished.
   std::uint64_t outstanding() const { return manager_->outstanding(); }

@@ -292,19 +292,21 @@ bool SynthesisManager::wait_for_threads(const std::function<bool()>& go_on, bool
 }
 
 // Makes the next request in this thread. False if there is none, or if its type may run only in
-// modelers: they get it in the next plan.
+// modelers: then it is published again, before the others.
 bool SynthesisManager::make_next_here() {
   if (own_reader_ == nullptr) own_reader_ = workshop_->board.add_reader();
   Request request;
   std::uint64_t retries = 0;
   if (!workshop_->board.claim(*own_reader_, request, retries)) return false;
+  ++reclaimed_;  // no modeler makes it
   if ((*workshop_->registry)[request.key.model].may_run_on_main_thread()) {
     execute_here(request);
-    ++buried_finished_;
     return true;
   }
-  ++reclaimed_;
-  returned_.push_back(std::move(request));
+  close_plan();
+  std::vector<Request> plan{std::move(request)};
+  std::ranges::move(std::exchange(unclaimed_, {}), std::back_inserter(plan));
+  publish_to_threads(std::move(plan));
   return false;
 }
 
