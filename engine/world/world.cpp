@@ -77,6 +77,10 @@ Palette drawn_palette(const World& world) {
   return palette;
 }
 
+bool World::has_costly_heights() const {
+  return shaped.layer != nullptr && shaped.layer->ground.has_fixed_part();
+}
+
 bool World::contains(core::BlockCoord block) const {
   const auto inside = [](std::int32_t index, std::int64_t count) {
     return count == 0 || (index >= 0 && index < count);

@@ -183,6 +183,8 @@ struct World {
   // else 0. Not part of world files.
   std::uint64_t files_hash = 0;
 
+  // True if an erosion or a network makes heights cost about ten times as much as those of noise.
+  bool has_costly_heights() const;
   // The layer over the terrain's function: the edits, or the shaped ground if there are no edits;
   // null: neither.
   const std::shared_ptr<const models::EditLayer>& layer() const {

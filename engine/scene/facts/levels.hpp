@@ -113,7 +113,7 @@ std::uint32_t largest_radius(const world::World& world, std::span<const NodeLeve
 // nodes of the world: 95 % of the vertices lie within this vertical distance of level 0; sharp
 // ridges lie beyond it. The bound that follows from the parameters (ModelType::level_error_m) is
 // several times as large where cells are small, because octaves seldom add up. Synthesises 16
-// nodes. Pure: the same for a world everywhere.
+// nodes, or 6 of a river network. Pure: the same for a world everywhere.
 double measured_ground_error_m(const SampleBlocks& blocks, const models::Registry& registry,
                                int node_level);
 

@@ -194,7 +194,7 @@ double work_of(const World& world, std::span<const FarScatter> scatters, const L
   const double ground = 0.35 * vertices * vertices *
                         static_cast<double>(world.terrain.integer(models::kTerrainOctaves)) *
                         (world.terrain.real(models::kTerrainWarp) > 0 ? 8 : 1) *
-                        (has_costly_heights(world) ? 10 : 1);
+                        (world.has_costly_heights() ? 10 : 1);
   const std::uint32_t tiles = plan.vertices > 0 ? ground_tiles(world, plan.level) : 0;
   double sum = ground * static_cast<double>(tiles + 1);  // 1: the whole node
   for (std::size_t s = 0; s < plan.scatters.size(); ++s) {

@@ -29,13 +29,9 @@ glm::dvec2 metres(std::uint32_t x, std::uint32_t z, double block_size_m) {
 
 }  // namespace
 
-bool has_costly_heights(const World& world) {
-  return world.shaped.layer && world.shaped.layer->ground.has_fixed_part();
-}
-
 int tile_level(const World& world, int node_level) {
   if (node_level <= 2) return 0;
-  return node_level - (has_costly_heights(world) ? 1 : 2);
+  return node_level - (world.has_costly_heights() ? 1 : 2);
 }
 
 std::uint32_t ground_tiles(const World& world, int node_level) {

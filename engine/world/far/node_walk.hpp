@@ -21,9 +21,6 @@ struct NodeBlock {
   glm::dvec2 in_node_m{0.0}, in_tile_m{0.0};
 };
 
-// True if an erosion or a network makes heights cost about ten times as much as those of the noise.
-bool has_costly_heights(const World& world);
-
 // Node level of the tiles of a node. Nodes of levels 1 and 2 have the terrain's own lattice (such
 // as 1 m). From there on the spacing doubles with each level, so no node has more than 16 tiles.
 // With costly heights nodes from level 3 on have four tiles, the grounds of the nodes below.

@@ -45,7 +45,7 @@ TEST_P(NodeWalkOver, VisitsEveryBlockOfANodeOnce) {
     }
     EXPECT_EQ(blocks.size(), static_cast<std::size_t>(side * side));
     EXPECT_EQ(tiles, ground_tiles(world, level));
-    EXPECT_LE(tiles, has_costly_heights(world) && level > 2 ? 4U : 16U);
+    EXPECT_LE(tiles, world.has_costly_heights() && level > 2 ? 4U : 16U);
   }
 }
 
