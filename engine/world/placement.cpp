@@ -51,12 +51,13 @@ struct Grounds {
 void place_instances(const World& world, const models::Registry& registry, core::BlockCoord block,
                      const Grounds& grounds, const models::BlockEdits* edits,
                      const std::vector<bool>* wanted, std::vector<Placement>& out) {
+  BlockObstacles obstacles(world, block);
   std::uint32_t first = 0;
   for (std::size_t s = 0; s < world.scatter.size(); first += world.scatter[s++].count) {
     if (wanted != nullptr && !(*wanted)[s]) continue;
     const Scatter& scatter = world.scatter[s];
     std::uint32_t index = first;
-    const Scattering scattering(world, registry[scatter.model], scatter, block);
+    const Scattering scattering(world, registry[scatter.model], scatter, obstacles);
     for (std::uint32_t k = 0; k < scatter.count; ++k, ++index) {
       if (edits != nullptr && edits->is_removed(index)) continue;
       auto place = scattering.place(grounds.base, index);
@@ -111,8 +112,27 @@ void place_wanted(const World& world, const models::Registry& registry, core::Bl
 
 }  // namespace
 
+std::span<const models::GroundEdit* const> BlockObstacles::roads() {
+  if (!roads_) {
+    roads_.emplace();
+    if (!world_.shaped.roads.empty() && world_.shaped.layer)
+      *roads_ = world_.shaped.layer->ground.roads_in(models::QuadCoord::of(block_),
+                                                     world_.block_size_m());
+  }
+  return *roads_;
+}
+
+bool BlockObstacles::may_have_water(double margin_m) {
+  if (!world_.shaped.has_water() || !world_.shaped.layer) return false;
+  const auto known = std::ranges::find(water_, margin_m, &std::pair<double, bool>::first);
+  if (known != water_.end()) return known->second;
+  const bool may =
+      world_.shaped.layer->ground.may_have_water(block_, margin_m, world_.block_size_m());
+  return water_.emplace_back(margin_m, may).second;
+}
+
 Scattering::Scattering(const World& world, const models::ModelType& type, const Scatter& scatter,
-                       core::BlockCoord block)
+                       BlockObstacles& block)
     : world_(world),
       seed_(world.seed),
       size_m_(static_cast<float>(world.block_size_m())),
@@ -120,16 +140,15 @@ Scattering::Scattering(const World& world, const models::ModelType& type, const 
       scatter_(scatter),
       specs_(type.parameters()),
       defaults_(models::default_parameters(type)),
-      block_(block),
+      obstacles_(block),
+      block_(block.block()),
       min_up_(static_cast<float>(std::cos(glm::radians(scatter.max_slope_deg)))),
       slope_(slope_parameters(type)) {
   if (scatter.mask.ground != 0) palette_ = drawn_palette(world);
-  if (!world.shaped.roads.empty() && world.shaped.layer)
-    roads_ =
-        world.shaped.layer->ground.roads_in(models::QuadCoord::of(block), world.block_size_m());
-  if (world.shaped.has_water() && world.shaped.layer)
-    has_rivers_ = world.shaped.layer->ground.may_have_water(
-        block, scatter.needs_water() ? scatter.near_water_m : 0, world.block_size_m());
+}
+
+bool Scattering::has_rivers() const {
+  return obstacles_.may_have_water(scatter_.needs_water() ? scatter_.near_water_m : 0);
 }
 
 // True if the limits allow this ground.
@@ -150,8 +169,8 @@ bool Scattering::may_stand(const models::GroundPoint& ground, glm::dvec2 local_m
 
 // The surface of the water of the world's function.
 std::optional<WaterSurface> Scattering::water_over(glm::dvec2 local_m) const {
-  return has_rivers_ ? function_water_surface(world_, {block_, {local_m.x, 0, local_m.y}})
-                     : sea_surface(world_);
+  return has_rivers() ? function_water_surface(world_, {block_, {local_m.x, 0, local_m.y}})
+                      : sea_surface(world_);
 }
 
 // True if there is water at the position, or on one of two rings of eight places around it.
@@ -172,12 +191,12 @@ bool Scattering::is_near_water(const models::BlockGround& ground, glm::dvec2 cor
 
 // True if a road, water or a mask excludes the instance at this position.
 bool Scattering::is_left_out(std::uint32_t index, glm::dvec2 local_m, double ground_m) const {
-  if (has_rivers_ && !scatter_.limits_depth()) {
+  if (!scatter_.limits_depth() && has_rivers()) {
     const auto water =
         world_.shaped.layer->ground.water_over(block_, local_m, static_cast<double>(size_m_));
     if (water && (water->widths <= 0.5 || water->surface_m > ground_m)) return true;
   }
-  for (const models::GroundEdit* road : roads_) {
+  for (const models::GroundEdit* road : obstacles_.roads()) {
     if (keeps_clear(*road->road, block_, local_m, static_cast<double>(size_m_))) return true;
   }
   if (!scatter_.mask.thins()) return false;
@@ -363,7 +382,8 @@ models::Parameters scatter_parameters(const models::Registry& registry, const Sc
 models::Parameters draw_parameters(const World& world, const models::Registry& registry,
                                    const Scatter& scatter, core::BlockCoord block,
                                    std::uint32_t index) {
-  return Scattering(world, registry[scatter.model], scatter, block).parameters(index);
+  BlockObstacles obstacles(world, block);
+  return Scattering(world, registry[scatter.model], scatter, obstacles).parameters(index);
 }
 
 glm::vec2 models_reach_m(const World& world, const models::Registry& registry) {

@@ -10,6 +10,7 @@
 #include <glm/vec3.hpp>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "engine/models/registry.hpp"
@@ -44,12 +45,31 @@ using SlopeParameters = std::array<int, 2>;
 // The indices for a model type.
 SlopeParameters slope_parameters(const models::ModelType& type);
 
+// The roads and the water of the world's function on a block, found when they are first asked for.
+// One thread.
+class BlockObstacles {
+ public:
+  // `world` must outlive it.
+  BlockObstacles(const World& world, core::BlockCoord block) : world_(world), block_(block) {}
+  core::BlockCoord block() const { return block_; }
+  // The roads that may cross the block.
+  std::span<const models::GroundEdit* const> roads();
+  // True if there may be rivers or lakes within so many metres.
+  bool may_have_water(double margin_m);
+
+ private:
+  const World& world_;
+  core::BlockCoord block_;
+  std::optional<std::vector<const models::GroundEdit*>> roads_;
+  std::vector<std::pair<double, bool>> water_;  // answers by margin
+};
+
 // One scatter on one block, with the single steps of place_models().
 class Scattering {
  public:
-  // All arguments except `block` must outlive it.
+  // All arguments must outlive it.
   Scattering(const World& world, const models::ModelType& type, const Scatter& scatter,
-             core::BlockCoord block);
+             BlockObstacles& block);
 
   // The position of an instance, in metres from the block's corner.
   struct Foothold {
@@ -66,6 +86,8 @@ class Scattering {
   models::Parameters parameters(std::uint32_t index, const glm::vec3& normal = {0, 1, 0}) const;
 
  private:
+  // True if rivers or lakes may be where instances look for water.
+  bool has_rivers() const;
   bool may_stand(const models::GroundPoint& ground, glm::dvec2 local_m) const;
   bool is_near_water(const models::BlockGround& ground, glm::dvec2 corner_m,
                      glm::dvec2 local_m) const;
@@ -79,13 +101,10 @@ class Scattering {
   const Scatter& scatter_;
   std::span<const models::ParameterSpec> specs_;
   models::Parameters defaults_;
+  BlockObstacles& obstacles_;
   core::BlockCoord block_;
   float min_up_;
-  std::optional<Palette> palette_;                // set if the mask selects kinds of ground
-  std::vector<const models::GroundEdit*> roads_;  // roads that may cross the block
-  // Rivers and lakes of the world's function may cross the block, or lie as near as an instance
-  // may ask.
-  bool has_rivers_ = false;
+  std::optional<Palette> palette_;  // set if the mask selects kinds of ground
   SlopeParameters slope_;
 };
 

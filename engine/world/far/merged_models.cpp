@@ -166,7 +166,8 @@ class MergedType final : public models::ModelType {
   const LevelPlan& plan(const Parameters& p, int level) const {
     return plans_[static_cast<std::size_t>(level_of(p))][static_cast<std::size_t>(level)];
   }
-  void add_scatter(std::size_t s, const NodeBlock& block, Making& making) const;
+  void add_scatter(std::size_t s, const NodeBlock& block, BlockObstacles& obstacles,
+                   Making& making) const;
   void make_from_like(const Instance& instance, const Parameters& p, Making& making) const;
   void add_instance(Instance& instance, const Scattering& scattering, Making& making) const;
 
@@ -275,11 +276,12 @@ void MergedType::add_instance(Instance& instance, const Scattering& scattering,
 
 // Numbers the instances of the whole node block by block. Every `together` consecutive instances
 // form a group, which one random member represents.
-void MergedType::add_scatter(std::size_t s, const NodeBlock& block, Making& making) const {
+void MergedType::add_scatter(std::size_t s, const NodeBlock& block, BlockObstacles& obstacles,
+                             Making& making) const {
   const FarScatter& far = scatters_[s];
   const ScatterPlan& how = making.plan.scatters[s];
   if (how.forms == 0) return;
-  const Scattering scattering(*world_, far.type(), far.scatter(), block.coord);
+  const Scattering scattering(*world_, far.type(), far.scatter(), obstacles);
   const std::uint64_t count = far.scatter().count, first = block.ordinal * count;
   const std::uint64_t all = count << (2 * making.plan.level);
   for (std::uint64_t g = first / how.together; g * how.together < first + count; ++g) {
@@ -305,8 +307,9 @@ void MergedType::add_scattered(const NodeWalk& walk, const models::EditLayer* ed
     if (!world_->contains(block.coord)) continue;
     if (!making.ground) walk.make_ground(i, making.ground);
     making.edits = edits != nullptr ? edits->block(block.coord) : nullptr;
+    BlockObstacles obstacles(*world_, block.coord);
     for (std::size_t s = 0; s < scatters_.size(); ++s)
-      add_scatter(s, block, making);
+      add_scatter(s, block, obstacles, making);
   }
 }
 

@@ -68,8 +68,8 @@ float unlikeness(glm::vec2 a, glm::vec2 b) {
 models::Parameters sample_parameters(const World& world, const models::ModelType& type,
                                      const Scatter& scatter, std::uint32_t first,
                                      std::uint32_t number) {
-  const Scattering scattering(world, type, scatter,
-                              {static_cast<std::int32_t>(number / scatter.count), 0});
+  BlockObstacles block(world, {static_cast<std::int32_t>(number / scatter.count), 0});
+  const Scattering scattering(world, type, scatter, block);
   return scattering.parameters(first + number % scatter.count);
 }
 

@@ -131,7 +131,8 @@ TEST(TreePictures, EverySpeciesHasImpostors) {
   for (const Scatter& scatter : forest.world.scatter) {
     const models::ModelType& type = forest.registry[scatter.model];
     const bool tree = type.name() != "rock" && type.name() != "grass" && scatter.count > 0;
-    const Scattering scattering(forest.world, type, scatter, {0, 0});
+    BlockObstacles block(forest.world, {0, 0});
+    const Scattering scattering(forest.world, type, scatter, block);
     if (tree && type.mesh_size(scattering.parameters(0), 0).triangle_count() > 1000) {
       EXPECT_TRUE(forest.pictures->has(scatter.model)) << type.name();
     }
