@@ -145,6 +145,7 @@ core::Result<std::uint64_t> Scene::amplify(const core::CameraPose& pose, const P
   State& s = *state_;
   s.input.pose = pose;
   s.rules = rules_of(s.settings, false);
+  s.rules.request = false;  // all nodes are created before anything is requested
   begin_tick(s);
   double fraction = 0;
   const auto go_on = [&] { return !progress || progress("amplifying", fraction); };

@@ -186,12 +186,27 @@ bool is_usable(const world::Sky& sky) {
          std::ranges::all_of(colours, [](const glm::vec3& c) { return core::is_finite(c); });
 }
 
+// A world with the ground of the last one keeps its patches and heights: they are functions of what
+// names them, and take seconds to make.
+void keep_caches(const world::World& before, world::World& world) {
+  if (!before.shaped.layer || !world.shaped.layer) return;
+  const models::GroundStack& known = before.shaped.layer->ground;
+  models::EditLayer layer = *world.shaped.layer;  // O(1)
+  if (!layer.ground.has_fixed_part() || !known.has_fixed_part()) return;
+  layer.ground.heights = known.heights;
+  if (layer.ground.network && known.network &&
+      layer.ground.network->identity() == known.network->identity())
+    layer.ground.network = known.network;
+  world.shaped.layer = std::make_shared<const models::EditLayer>(std::move(layer));
+}
+
 }  // namespace
 
 core::Result<PreparedWorld> prepare_world(world::World world, models::Registry registry,
                                           const SceneSnapshot& snapshot) {
   PreparedWorld prepared;
   WorldFacts& facts = prepared.facts;
+  keep_caches(snapshot.world, world);
   world::set_edits(world, nullptr);
   prepared.looks_only = same_but_looks(world, snapshot.world);
   facts.world = std::move(world);
@@ -209,17 +224,26 @@ core::Result<PreparedWorld> prepare_world(world::World world, models::Registry r
     if (auto ok = core::check_cancelled(); !ok) return tl::unexpected(ok.error());
     world::place_models(facts.world, facts.registry, block, wanted, prepared.models[block]);
   }
+  if (!facts.world.shaped.network) return prepared;
+  // So that the main thread finds the patches of its nodes.
+  for (const visibility::NodeCoord& node : snapshot.nodes) {
+    if (auto ok = core::check_cancelled(); !ok) return tl::unexpected(ok.error());
+    static_cast<void>(world::water_parameters(facts.world, node.coord, node.level));
+  }
   return prepared;
 }
 
 SceneSnapshot Scene::snapshot() const {
   const WorldFacts& facts = state_->facts;
   SceneSnapshot snapshot{
-      state_->settings, facts.world, {}, facts.world.edits ? nullptr : facts.derived};
+      state_->settings, facts.world, {}, {}, facts.world.edits ? nullptr : facts.derived};
   world::set_edits(snapshot.world, nullptr);
   state_->entities.each<const QuadtreeNode>([&](auto, auto nodes) {
     for (const QuadtreeNode& node : nodes) {
-      if (node.at.level == 0) snapshot.blocks.push_back(node.at.coord);
+      if (node.at.level == 0)
+        snapshot.blocks.push_back(node.at.coord);
+      else
+        snapshot.nodes.push_back(node.at);
     }
   });
   return snapshot;

@@ -47,7 +47,7 @@ class GroundPatchType final : public ModelType {
 
 }  // namespace
 
-std::vector<network::TileKey> ground_patches(const Parameters& terrain) {
+std::vector<network::TileKey> ground_patches(const Parameters& terrain, std::int64_t beyond_cells) {
   std::vector<network::TileKey> tiles;
   const TerrainShape shape(terrain);
   if (shape.stack == nullptr || shape.stack->network == nullptr) return tiles;
@@ -58,7 +58,9 @@ std::vector<network::TileKey> ground_patches(const Parameters& terrain) {
   // The parent's samples lie up to two cells beyond.
   const LatticeSpan along_x{shape.world_of(x, -2), shape.world_of(x, shape.size + 1)};
   const LatticeSpan along_z{shape.world_of(z, -2), shape.world_of(z, shape.size + 1)};
-  shape.each_patch(along_x, along_z, shape.detail(), add);
+  shape.each_patch({along_x.first - beyond_cells, along_x.last + beyond_cells},
+                   {along_z.first - beyond_cells, along_z.last + beyond_cells}, shape.detail(),
+                   add);
   shape.each_patch(along_x, along_z, GroundDetail::of_node(shape.node_level + 1), add);
   TerrainLight::each_grid(shape,
                           {terrain.real(kTerrainSunAzimuth), terrain.real(kTerrainSunElevation)}, x,

@@ -10,9 +10,11 @@
 
 namespace psygen::models {
 
-// The patches that the ground of a node reads: its meshes, their light, its water and the places of
-// models on it. Each once; empty without a network. About 1 µs.
-std::vector<network::TileKey> ground_patches(const Parameters& terrain);
+// The patches that the ground of a node reads: its meshes, their light, its water, the places of
+// models on it, and heights up to `beyond_cells` cells of node level 0 beyond its border. Each
+// once; empty without a network. About 1 µs.
+std::vector<network::TileKey> ground_patches(const Parameters& terrain,
+                                             std::int64_t beyond_cells = 0);
 
 // The model type "ground_patch": a request for it leaves the patch in the network's store. Its mesh
 // has nothing to draw. Without a network it does nothing.

@@ -79,6 +79,7 @@ struct SceneSnapshot {
   SceneSettings settings;
   world::World world;                               // without edits
   std::vector<core::BlockCoord> blocks;             // whose models exist
+  std::vector<visibility::NodeCoord> nodes;         // the coarser ones
   std::shared_ptr<const DerivedWorldData> derived;  // of the world; null: nothing can be reused
 };
 

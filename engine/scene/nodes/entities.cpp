@@ -93,13 +93,6 @@ void create_models(const WorldFacts& facts, const visibility::NodeCoord& at, ecs
   entities.set_children(node, meshes);
 }
 
-models::Parameters lit_ground(const WorldFacts& facts, const Daylight& daylight,
-                              const visibility::NodeCoord& at) {
-  models::Parameters ground = node_terrain(facts.world, at);
-  world::set_sun(ground, daylight.azimuth_deg, daylight.elevation_deg);
-  return ground;
-}
-
 MeshColumns ground_columns(const WorldFacts& facts, const Daylight& daylight,
                            const visibility::NodeCoord& at) {
   const int level = facts.levels[at.level].mesh_level;
@@ -182,6 +175,11 @@ void update_meshes(const WorldFacts& facts, const visibility::NodeCoord& at,
                    const NodeChange& change, ecs::Entity node,
                    std::vector<world::Placement>& scratch, const NodeWork& work) {
   ecs::World& entities = work.entities;
+  if (!change.ground && !change.models && !change.world) {
+    for (const ecs::Entity mesh : entities.children(node))
+      follow_layer(facts, entities.get<MeshSource>(mesh)->parameters);
+    return;
+  }
   const core::BlockCoord block = visibility::corner_block(at);
   list_meshes(facts, at, scratch);
   const std::span<const ecs::Entity> now = entities.children(node);
@@ -229,7 +227,7 @@ class StayingModels {
  public:
   // `kept`: null: no instance stays.
   StayingModels(const WorldFacts& facts, core::BlockCoord block, const KeptModels* kept)
-      : facts_(facts), block_(block), kept_(kept) {}
+      : facts_(facts), block_(block), kept_(kept), obstacles_(facts.world, block) {}
 
   // Returns false for an instance that must be placed again.
   bool take(ecs::Entity model, const synthesis::MeshSupply& meshes, ecs::World& entities) {
@@ -251,7 +249,7 @@ class StayingModels {
   const world::Scattering& scattering(std::uint32_t number) {
     if (!scattering_ || number_ != number) {
       const world::Scatter& scatter = facts_.world.scatter[number];
-      scattering_.emplace(facts_.world, facts_.registry[scatter.model], scatter, block_);
+      scattering_.emplace(facts_.world, facts_.registry[scatter.model], scatter, obstacles_);
       number_ = number;
     }
     return *scattering_;
@@ -260,6 +258,7 @@ class StayingModels {
   const WorldFacts& facts_;
   core::BlockCoord block_;
   const KeptModels* kept_;
+  world::BlockObstacles obstacles_;
   std::optional<world::Scattering> scattering_;  // of this number
   std::uint32_t number_ = 0;
 };
@@ -338,6 +337,13 @@ std::vector<bool> KeptModels::wanted() const {
   for (const Stays of : stays)
     wanted.push_back(of == Stays::kNothing);
   return wanted;
+}
+
+models::Parameters lit_ground(const WorldFacts& facts, const Daylight& daylight,
+                              const visibility::NodeCoord& at) {
+  models::Parameters ground = node_terrain(facts.world, at);
+  world::set_sun(ground, daylight.azimuth_deg, daylight.elevation_deg);
+  return ground;
 }
 
 ecs::Entity create_node(const SceneSettings& settings, const WorldFacts& facts,

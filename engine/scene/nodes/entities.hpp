@@ -26,6 +26,10 @@ struct NodeWork {
   ecs::EventQueue<ModelRemoved>& removed;
 };
 
+// The ground of a node under the sun of the day.
+models::Parameters lit_ground(const WorldFacts& facts, const Daylight& daylight,
+                              const visibility::NodeCoord& at);
+
 // Creates a node and its models, and returns the node. `scratch` is memory for placements. About
 // 20 µs for a block.
 ecs::Entity create_node(const SceneSettings& settings, const WorldFacts& facts,

@@ -1,11 +1,13 @@
 #include "engine/scene/nodes/ground_patches.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/core/log.hpp"
 #include "engine/models/edits.hpp"
-#include "engine/scene/facts/levels.hpp"
 #include "engine/scene/facts/world_facts.hpp"
+#include "engine/scene/nodes/daylight.hpp"
+#include "engine/scene/nodes/entities.hpp"
 #include "engine/scene/nodes/mesh_entity.hpp"
 
 namespace psygen::scene {
@@ -13,13 +15,35 @@ namespace {
 
 using models::network::TileKey;
 
-// More are forgotten at once, and requested again where they are needed.
-constexpr std::size_t kMaxKnown = 1 << 16;
-// Before all meshes except those that a frame lacks, which a main thread may make; never a patch.
+// Below every group that the main thread may make (PlanLimits::here_up_to), above all meshes out of
+// view.
 constexpr auto kGroup = synthesis::RankGroup::kDrawn;
 
 const models::RiverNetwork* network_of(const world::World& world) {
   return world.layer() != nullptr ? world.layer()->ground.network.get() : nullptr;
+}
+
+// How far beyond a block its models look for water, in cells.
+std::int64_t near_water_cells(const world::World& world) {
+  double farthest_m = 0;
+  for (const world::Scatter& scatter : world.scatter) {
+    if (scatter.needs_water()) farthest_m = std::max(farthest_m, scatter.near_water_m);
+  }
+  return static_cast<std::int64_t>(std::ceil(farthest_m / world.cell_m()));
+}
+
+// A tile is at least a block wide, so its numbers fit those of blocks.
+synthesis::MeshKey key_of(const TileKey& tile, const models::Parameters& p,
+                          const WorldFacts& facts) {
+  return {{static_cast<std::int32_t>(tile.i), static_cast<std::int32_t>(tile.j)},
+          static_cast<std::uint32_t>(tile.level),
+          facts.patch_model,
+          0,
+          p.hash()};
+}
+
+models::Parameters parameters_of(const TileKey& tile, const WorldFacts& facts) {
+  return models::ground_patch_parameters(facts.world.layer().get(), tile);
 }
 
 }  // namespace
@@ -28,20 +52,35 @@ void GroundPatches::begin(const WorldFacts& facts) {
   wanted_.clear();
   const models::RiverNetwork* const network = network_of(facts.world);
   const std::uint64_t identity = network != nullptr ? network->identity() : 0;
-  if (identity != network_ || made_.size() > kMaxKnown) {
-    made_.clear();
-    requested_.clear();
-  }
+  if (identity != network_) patches_.clear();
   network_ = identity;
+  near_water_cells_ = near_water_cells(facts.world);
+  if (patches_.size() > kMaxKnown) forget_oldest();
+  ++tick_;
 }
 
-bool GroundPatches::ready(const WorldFacts& facts, const visibility::NodeCoord& at) {
+// Patches of the last tick stay, however many they are: their nodes still wait for others.
+void GroundPatches::forget_oldest() {
+  std::vector<std::uint64_t> asked;
+  for (const auto& [tile, patch] : patches_)
+    asked.push_back(patch.asked);
+  const auto oldest = asked.begin() + static_cast<std::ptrdiff_t>(asked.size() - kMaxKnown);
+  std::ranges::nth_element(asked, oldest);
+  const std::uint64_t kept_from = std::min(*oldest, tick_);
+  std::erase_if(patches_, [&](const auto& known) { return known.second.asked < kept_from; });
+}
+
+bool GroundPatches::ready(const WorldFacts& facts, const Daylight& daylight,
+                          const visibility::NodeCoord& at) {
   if (network_ == 0) return true;
   bool all = true;
-  for (const TileKey& tile : models::ground_patches(node_terrain(facts.world, at))) {
-    if (made_.contains(tile)) continue;
+  for (const TileKey& tile : models::ground_patches(lit_ground(facts, daylight, at),
+                                                    at.level == 0 ? near_water_cells_ : 0)) {
+    Patch& patch = patches_[tile];
+    const bool asked = std::exchange(patch.asked, tick_) == tick_;
+    if (patch.made) continue;
     all = false;
-    if (std::ranges::find(wanted_, tile) == wanted_.end()) wanted_.push_back(tile);
+    if (!asked) wanted_.push_back(tile);
   }
   return all;
 }
@@ -50,32 +89,30 @@ void GroundPatches::want_all(const WorldFacts& facts, synthesis::MeshSupply& sup
   parameters_.clear();
   parameters_.reserve(wanted_.size());
   for (const TileKey& tile : wanted_) {
-    const models::Parameters& p =
-        parameters_.emplace_back(models::ground_patch_parameters(facts.world.layer().get(), tile));
-    const synthesis::MeshKey key{{}, 0, facts.patch_model, 0, p.hash()};
+    const models::Parameters& p = parameters_.emplace_back(parameters_of(tile, facts));
+    const synthesis::MeshKey key = key_of(tile, p, facts);
     // A change of the world may have taken the finished request.
     const synthesis::MeshHandle handle = supply.find(key);
-    const synthesis::MeshRecord* const record = supply.get(handle);
-    if (record != nullptr && (record->state == synthesis::MeshState::kReady ||
-                              record->state == synthesis::MeshState::kFailed)) {
-      made_.insert(tile);
+    if (supply.ready(handle) != nullptr) {
+      patches_[tile].made = true;
       supply.forget(handle);
       continue;
     }
-    requested_.emplace(key.parameters_hash, tile);
     supply.want({key, &p, owner_of(ecs::kNullEntity), synthesis::Rank::by_layer(kGroup, 0, 0.0F)});
   }
 }
 
-// A failed patch is made again by the meshes that need it, which then fail by themselves.
+// Nodes go on without a patch that could not be made: they make it, or fail to, like any other
+// part of themselves.
 bool GroundPatches::take(const synthesis::Completion& job, const WorldFacts& facts,
                          synthesis::MeshSupply& supply) {
   if (facts.patch_model == 0 || job.key.model != facts.patch_model) return false;
-  if (!job.ok) core::log_warning("a part of a river network could not be made: " + job.error);
-  if (const auto asked = requested_.find(job.key.parameters_hash); asked != requested_.end()) {
-    made_.insert(asked->second);
-    requested_.erase(asked);
-  }
+  if (!job.ok && !job.late)
+    core::log_warning("a part of a river network could not be made: " + job.error);
+  const TileKey tile{static_cast<int>(job.key.index), job.key.block.x, job.key.block.z};
+  const auto known = patches_.find(tile);
+  if (known != patches_.end() && parameters_of(tile, facts).hash() == job.key.parameters_hash)
+    known->second.made = true;
   supply.forget(job.handle);
   return true;
 }

@@ -1,12 +1,11 @@
 // The patches of a river network that modelers have made (models/terrain/ground_patch.hpp). A node
 // waits for those that its ground reads, so that the main thread makes none. What is known here
 // decides, not the network's store: what a store drops depends on threads, and virtual frames must
-// not. Main thread only.
+// not. Fewer are known than a store keeps, so that it has those that are. Main thread only.
 #pragma once
 
 #include <cstdint>
 #include <unordered_map>
-#include <unordered_set>
 #include <vector>
 
 #include "engine/models/terrain/ground_patch.hpp"
@@ -15,28 +14,39 @@
 
 namespace psygen::scene {
 
+struct Daylight;
 struct WorldFacts;
 
 class GroundPatches {
  public:
-  // Begins a tick of a world: nothing is wanted, and patches of another network are forgotten.
+  // About half of what a network's store keeps (models/network/store.hpp).
+  static constexpr std::size_t kMaxKnown = 256;
+
+  // Begins a tick of a world: nothing is wanted, patches of another network are forgotten, and of
+  // too many those that no node has asked for lately.
   void begin(const WorldFacts& facts);
   // True if all patches of a node are made, or if the world has no network; wants the others.
-  bool ready(const WorldFacts& facts, const visibility::NodeCoord& at);
+  bool ready(const WorldFacts& facts, const Daylight& daylight, const visibility::NodeCoord& at);
   // Wants them as requests. Part of the cache system.
   void want_all(const WorldFacts& facts, synthesis::MeshSupply& supply);
   // Takes a finished request. False if it was for something else. Part of the upload system.
   bool take(const synthesis::Completion& job, const WorldFacts& facts,
             synthesis::MeshSupply& supply);
-  // Patches wanted in this tick.
-  std::size_t wanted() const { return wanted_.size(); }
+  // Patches that are made or wanted.
+  std::size_t known() const { return patches_.size(); }
 
  private:
   using TileKey = models::network::TileKey;
+  struct Patch {
+    std::uint64_t asked = 0;  // the last tick in which a node needed it
+    bool made = false;
+  };
+  void forget_oldest();
 
-  std::uint64_t network_ = 0;  // its identity
-  std::unordered_set<TileKey, models::network::TileKeyHash> made_;
-  std::unordered_map<std::uint64_t, TileKey> requested_;  // by the hash of their parameters
+  std::uint64_t network_ = 0;  // its identity; 0: none
+  std::int64_t near_water_cells_ = 0;
+  std::uint64_t tick_ = 0;
+  std::unordered_map<TileKey, Patch, models::network::TileKeyHash> patches_;
   std::vector<TileKey> wanted_;
   std::vector<models::Parameters> parameters_;  // of the requests
 };

@@ -7,7 +7,6 @@
 #include "engine/core/clock.hpp"
 #include "engine/scene/facts/levels.hpp"
 #include "engine/scene/facts/world_facts.hpp"
-#include "engine/world/far/node_walk.hpp"
 
 namespace psygen::scene {
 namespace {
@@ -164,11 +163,11 @@ void streaming_system(StreamingContext context, Streaming& streaming, GroundPatc
   const bool patient = rules.request && !rules.wait;
   patches.begin(facts);
   std::vector<visibility::NodeCoord> waiting;  // the most important first
-  const double heights_s = world::has_costly_heights(facts.world) ? kHeightsSeconds : 0;
+  const double heights_s = facts.world.has_costly_heights() ? kHeightsSeconds : 0;
   while (!streaming.missing.empty() && !may_wait(streaming.missing.back())) {
     const visibility::NodeCoord at = streaming.missing.back();
     streaming.missing.pop_back();
-    if (patient && !stands_in(at) && !patches.ready(facts, at)) {
+    if (patient && !stands_in(at) && !patches.ready(facts, context.daylight, at)) {
       waiting.push_back(at);
       if (waiting.size() == kMaxWaiting && !all) break;
       continue;

@@ -106,6 +106,54 @@ TEST(GroundPatches, AChangeOfTheWorldLeavesNoNodeWaiting) {
   }
 }
 
+// Another scatter, say, leaves the network as it is: the new world finds all of its patches.
+TEST(GroundPatches, StayWhenAWorldWithTheSameNetworkFollows) {
+  const std::string text = network_text();
+  const auto scene = network_scene(parsed(text));
+  scene->settle(pose_at(3, 3));
+  const models::RiverNetwork* const before =
+      state_of(*scene).facts.world.layer()->ground.network.get();
+  ASSERT_TRUE(scene->set_world(parsed(text + "\n[[scatter]]\nmodel = \"rock\"\ncount = 2\n"),
+                               models::make_standard_registry()));
+  const world::World& world = state_of(*scene).facts.world;
+  EXPECT_EQ(world.layer()->ground.network.get(), before);
+  EXPECT_EQ(world.terrain.edits(), world.layer().get());
+  for (const visibility::NodeCoord& node : nodes_of_scene(*scene))
+    EXPECT_TRUE(has_patches(world, node));
+}
+
+// The water of all nodes is listed at once when another network follows.
+TEST(GroundPatches, OfAnotherNetworkAreMadeWithTheWorldThatFollows) {
+  const std::string text = network_text();
+  const auto scene = network_scene(parsed(text));
+  scene->settle(pose_at(3, 3));
+  models::Registry registry = models::make_standard_registry();
+  const auto prepared =
+      prepare_world(parsed(world::testing::replaced(text, "seed = 11", "seed = 12")),
+                    std::move(registry), scene->snapshot());
+  ASSERT_TRUE(prepared);
+  const models::RiverNetwork& network = *prepared->facts.world.layer()->ground.network;
+  const double cells = static_cast<double>(prepared->facts.world.terrain.integer(models::kTerrainSize) - 1);
+  for (const visibility::NodeCoord& node : nodes_of_scene(*scene)) {
+    const auto first = static_cast<std::int64_t>(cells * std::ldexp(node.coord.x, node.level));
+    const auto last = static_cast<std::int64_t>(cells * std::ldexp(node.coord.z, node.level));
+    EXPECT_TRUE(
+        network.ready(network.tile_of(first, last, models::GroundDetail::of_node(node.level))));
+  }
+}
+
+TEST(GroundPatches, ThatNoNodeAskedForLatelyAreForgotten) {
+  const world::World world = parsed(network_text());
+  const auto scene = network_scene(world);
+  State& s = state_of(*scene);
+  for (int place = 0; place < 40; ++place) {
+    for (int i = 0; i < kTicks && (i == 0 || !s.streaming.missing.empty()); ++i)
+      tick_at(*scene, pose_at(1000 * place, 0));
+    EXPECT_TRUE(s.streaming.missing.empty());
+    EXPECT_LE(s.patches.known(), GroundPatches::kMaxKnown + 64);
+  }
+}
+
 TEST(GroundPatches, PrefillMakesAllOfThem) {
   const world::World world = parsed(network_text());
   const auto scene = network_scene(world);
@@ -115,13 +163,14 @@ TEST(GroundPatches, PrefillMakesAllOfThem) {
     EXPECT_TRUE(has_patches(world, node));
 }
 
-TEST(GroundPatches, ParadigmsWithoutModelersDoNotWait) {
+TEST(GroundPatches, NoParadigmWaitsForPatchesThatNobodyMakes) {
   const world::World world = parsed(network_text());
   SceneSettings settings = small_settings();
-  for (const Paradigm paradigm : {Paradigm::kLazyEvaluation, Paradigm::kDataAmplification}) {
+  for (const Paradigm paradigm : {Paradigm::kLazyEvaluation, Paradigm::kDataAmplification,
+                                  Paradigm::kParallelLazyAmplification}) {
     settings.paradigm = paradigm;
     const auto scene = make_scene(world, settings, models::make_standard_registry());
-    if (paradigm == Paradigm::kDataAmplification) {
+    if (paradigm != Paradigm::kLazyEvaluation) {
       EXPECT_TRUE(scene->amplify(pose_at(3, 3)));
     }
     tick_at(*scene, pose_at(3, 3));
