@@ -321,7 +321,7 @@ Rect coarse_for(const Rect& w) {
 }
 
 NodePatch halve(const Scale& scale, LandFields& fields, const NodePatch& coarse, const Rect& want) {
-  PSYGEN_ASSERT(coarse.rect.holds(coarse_for(want)), "the coarse nodes around the fine ones exist");
+  PSYGEN_CHECK(coarse.rect.holds(coarse_for(want)), "the coarse nodes around the fine ones exist");
   NodePatch f(coarse.level + 1, want.grown(3));
   for (std::int64_t j = f.rect.j0; j < f.rect.j1; ++j) {
     for (std::int64_t i = f.rect.i0; i < f.rect.i1; ++i) {
@@ -373,7 +373,6 @@ NodePatch nodes_from(const Scale& scale, RootNodes& root, NodePatch p, int level
     constexpr std::array<std::int64_t, 4> kRings{2, 5, 6, 7};
     const std::int64_t rings = kRings[static_cast<std::size_t>(std::min(finest - p.level - 1, 3))];
     const Rect want = Rect{2 * near.i0, 2 * near.j0, 2 * near.i1 - 1, 2 * near.j1 - 1}.grown(rings);
-    PSYGEN_CHECK(p.rect.covers(coarse_for(want)), "the coarser nodes suffice");
     p = halve(scale, root.fields(), p, want);
   }
   return p;

@@ -15,7 +15,8 @@ constexpr double kLargestShift = 0.42, kLongestEdge = 2.0;
 // The nodes of a level that nodes of the level below it in `fine` depend on.
 Rect coarse_for(const Rect& fine);
 
-// Makes the nodes `want` of the level below `coarse`, which must cover coarse_for(want).
+// Makes the nodes `want` of the level below `coarse`, which must hold coarse_for(want); an assertion
+// fails if it does not, also in release.
 NodePatch halve(const Scale& scale, LandFields& fields, const NodePatch& coarse, const Rect& want);
 
 // An axis-aligned square of units.
@@ -34,7 +35,7 @@ struct Surroundings {
 NodePatch nodes_around(const Scale& scale, RootNodes& root, int level, const Surroundings& around,
                        int finest);
 // The same from nodes of a coarser level, made with this finest level for a square and margin that
-// hold these. An assertion fails if they do not suffice, also in release.
+// hold these. An assertion fails if they do not suffice, as in halve().
 NodePatch nodes_from(const Scale& scale, RootNodes& root, NodePatch coarse, int level,
                      const Surroundings& around, int finest);
 

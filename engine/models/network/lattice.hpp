@@ -37,9 +37,6 @@ constexpr std::int64_t floor_div(std::int64_t a, std::int64_t b) {
 struct Rect {
   std::int64_t i0 = 0, j0 = 0, i1 = 0, j1 = 0;
   constexpr Rect grown(std::int64_t by) const { return {i0 - by, j0 - by, i1 + by, j1 + by}; }
-  constexpr bool covers(const Rect& o) const {
-    return i0 <= o.i0 && j0 <= o.j0 && o.i1 <= i1 && o.j1 <= j1;
-  }
   constexpr std::int64_t width() const { return i1 - i0; }
   constexpr std::int64_t height() const { return j1 - j0; }
   constexpr bool holds(const Rect& r) const {
