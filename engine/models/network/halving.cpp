@@ -1,6 +1,7 @@
 #include "engine/models/network/halving.hpp"
 
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "engine/core/assert.hpp"
@@ -355,27 +356,30 @@ NodePatch nodes_around(const Scale& scale, RootNodes& root, int level, const Sur
     for (std::int64_t i = i0; i < i1; ++i)
       p.at(i, j) = root.node(i, j);
   }
-  return nodes_from(scale, root, std::move(p), level, around, finest);
+  return nodes_from(scale, root, p, level, around, finest);
 }
 
-NodePatch nodes_from(const Scale& scale, RootNodes& root, NodePatch p, int level,
+NodePatch nodes_from(const Scale& scale, RootNodes& root, const NodePatch& coarse, int level,
                      const Surroundings& around, int finest) {
   // Descendants stay within kLargestShift of their triangle, whose edges are shorter than
   // kLongestEdge.
-  const auto tight = [&] {
+  const auto tight = [&](const NodePatch& p) {
     const auto beyond = static_cast<std::int64_t>((kLargestShift + kLongestEdge) *
                                                   static_cast<double>(scale.spacing(p.level)));
     return reaching(p, around.square, around.margin + beyond);
   };
-  while (p.level < level) {
-    const Rect near = tight();
+  std::optional<NodePatch> made;
+  for (int from = coarse.level; from < level; ++from) {
+    const NodePatch& p = made ? *made : coarse;
+    const Rect near = tight(p);
     // coarse_for() of these fits into those of the level above.
     constexpr std::array<std::int64_t, 4> kRings{2, 5, 6, 7};
-    const std::int64_t rings = kRings[static_cast<std::size_t>(std::min(finest - p.level - 1, 3))];
+    const std::int64_t rings = kRings[static_cast<std::size_t>(std::min(finest - from - 1, 3))];
     const Rect want = Rect{2 * near.i0, 2 * near.j0, 2 * near.i1 - 1, 2 * near.j1 - 1}.grown(rings);
-    p = halve(scale, root.fields(), p, want);
+    made = halve(scale, root.fields(), p, want);
   }
-  return p;
+  if (!made) return coarse;
+  return *std::move(made);
 }
 
 }  // namespace psygen::models::network

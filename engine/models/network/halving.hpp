@@ -36,7 +36,7 @@ NodePatch nodes_around(const Scale& scale, RootNodes& root, int level, const Sur
                        int finest);
 // The same from nodes of a coarser level, made with this finest level for a square and margin that
 // hold these. An assertion fails if they do not suffice, as in halve().
-NodePatch nodes_from(const Scale& scale, RootNodes& root, NodePatch coarse, int level,
+NodePatch nodes_from(const Scale& scale, RootNodes& root, const NodePatch& coarse, int level,
                      const Surroundings& around, int finest);
 
 }  // namespace psygen::models::network

@@ -319,7 +319,8 @@ bool Patch::may_have_lake(const Box& box) const {
 }
 
 bool Patch::may_have_water(const Box& box) const {
-  bool any = may_have_lake(box);
+  if (may_have_lake(box)) return true;
+  bool any = false;
   each_curve(box, [&](const Curve& c) {
     const auto metres = [&](std::int32_t v, std::int32_t of) {
       return static_cast<float>(v - of) * unit_m;
