@@ -52,11 +52,7 @@ double mask_share(const ScatterMask& mask, std::uint64_t seed, glm::dvec2 place_
           models::patch_noise_below(mask.share)))
       return 0;
   }
-  if (!mask.picture) return 1;
-  const auto& [left, top, right, bottom] = mask.area_m;
-  const double u = (place_m.x - left) / (right - left), v = (place_m.y - top) / (bottom - top);
-  const bool inside = u >= 0 && u <= 1 && v >= 0 && v <= 1;
-  return inside ? mask.picture->at(u, v) : 0;
+  return mask.picture ? mask.picture->over(mask.area_m, place_m) : 1;
 }
 
 std::uint64_t mask_hash(const ScatterMask& mask) {

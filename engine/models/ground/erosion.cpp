@@ -34,8 +34,9 @@ double tangent(double degrees) {
 ErosionRamp ramp(double from, double to) {
   return {static_cast<float>(from), static_cast<float>(1 / std::max(to - from, 1e-6))};
 }
-double smooth(double v) {
-  const double t = std::clamp(v, 0.0, 1.0);
+template <class Real>
+Real smooth(Real v) {
+  const Real t = std::clamp(v, Real{0}, Real{1});
   return t * t * (3 - 2 * t);
 }
 // Returns the fraction of features of this width that a detail shows.
@@ -229,8 +230,7 @@ bool ErosionFilter::is_plain() const {
 
 float ErosionFilter::plain(float value, const PlainGuide& guide) const {
   const auto at = [](const ErosionRamp& ramp, float v) {
-    const float t = std::clamp((v - ramp.from) * ramp.per, 0.0F, 1.0F);
-    return t * t * (3 - 2 * t);
+    return smooth((v - ramp.from) * ramp.per);
   };
   const ErosionKernel& k = kernel_;
   const float band = at(k.lowest, guide.height_m) * (1 - at(k.highest, guide.height_m));

@@ -51,6 +51,12 @@ double GreyPicture::at(double u, double v) const {
          (value(left, below) * (1 - s) + value(right, below) * s) * t;
 }
 
+double GreyPicture::over(const std::array<double, 4>& area_m, glm::dvec2 place_m) const {
+  const auto& [left, top, right, bottom] = area_m;
+  const double u = (place_m.x - left) / (right - left), v = (place_m.y - top) / (bottom - top);
+  return u >= 0 && u <= 1 && v >= 0 && v <= 1 ? at(u, v) : 0;
+}
+
 std::uint64_t content_hash(const GreyPicture& picture) {
   std::uint64_t hash = core::mix64(picture.width);
   for (std::uint32_t row = 0; row < picture.height; ++row)
@@ -91,10 +97,7 @@ double GroundMask::at(glm::dvec2 place_m, glm::dvec2 own) const {
   }
   if (!picture || kept == 0) return kept;
   if (area_m == std::array<double, 4>{}) return kept * picture->at(own.x, own.y);
-  const auto& [left, top, right, bottom] = area_m;
-  const double u = (place_m.x - left) / (right - left), v = (place_m.y - top) / (bottom - top);
-  const bool inside = u >= 0 && u <= 1 && v >= 0 && v <= 1;
-  return inside ? kept * picture->at(u, v) : 0;
+  return kept * picture->over(area_m, place_m);
 }
 
 std::uint64_t GroundMask::hash() const {

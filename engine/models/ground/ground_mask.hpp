@@ -25,6 +25,9 @@ struct GreyPicture {
   // Linear interpolation between pixel centres, 0 … 1. (0, 0) is the upper left corner, (1, 1) the
   // lower right one. Outside, the value of the border.
   double at(double u, double v) const;
+  // The same at a place for a picture that covers a rectangle: its least x and z, then its largest.
+  // 0 outside of it.
+  double over(const std::array<double, 4>& area_m, glm::dvec2 place_m) const;
 };
 
 // The required value of GreyPicture::hash: the sum modulo 2^64 of the row hashes and the width.

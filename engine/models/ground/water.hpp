@@ -113,8 +113,7 @@ std::optional<BodySurface> surface_of(const LakePiece& lake, glm::dvec2 place_m)
 
 // The foam of a river by the slope of its surface downstream, 0 … 1: none below 4 %, all at 40 %.
 constexpr double foam_of_fall(double fall) {
-  const double steep = std::clamp((fall - 0.04) / 0.36, 0.0, 1.0);
-  return steep * steep * (3 - 2 * steep);
+  return faded(fall - 0.04, 0.36);
 }
 
 // Metres from the outline of a lake to a place in its tile, or on the tile's border; below 0
