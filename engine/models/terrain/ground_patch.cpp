@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/models/edits.hpp"
+#include "engine/models/terrain/grid.hpp"
 #include "engine/models/terrain/light.hpp"
 #include "engine/models/terrain/shape.hpp"
 #include "engine/models/terrain/terrain.hpp"
@@ -55,12 +56,17 @@ std::vector<network::TileKey> ground_patches(const Parameters& terrain, std::int
     if (std::ranges::find(tiles, tile) == tiles.end()) tiles.push_back(tile);
   };
   const std::int64_t x = terrain.integer(kTerrainBlockX), z = terrain.integer(kTerrainBlockZ);
-  // The parent's samples lie up to two cells beyond.
-  const LatticeSpan along_x{shape.world_of(x, -2), shape.world_of(x, shape.size + 1)};
-  const LatticeSpan along_z{shape.world_of(z, -2), shape.world_of(z, shape.size + 1)};
-  shape.each_patch({along_x.first - beyond_cells, along_x.last + beyond_cells},
-                   {along_z.first - beyond_cells, along_z.last + beyond_cells}, shape.detail(),
-                   add);
+  // The parent's samples, and those of normals, lie up to a cell of level 1 beyond.
+  const int beyond = terrain_strides(shape.size)[1];
+  const auto along = [&](std::int64_t block) {
+    return LatticeSpan{shape.world_of(block, -beyond),
+                       shape.world_of(block, shape.size - 1 + beyond)};
+  };
+  const auto wider = [beyond_cells](LatticeSpan span) {
+    return LatticeSpan{span.first - beyond_cells, span.last + beyond_cells};
+  };
+  const LatticeSpan along_x = along(x), along_z = along(z);
+  shape.each_patch(wider(along_x), wider(along_z), shape.detail(), add);
   shape.each_patch(along_x, along_z, GroundDetail::of_node(shape.node_level + 1), add);
   TerrainLight::each_grid(shape,
                           {terrain.real(kTerrainSunAzimuth), terrain.real(kTerrainSunElevation)}, x,
