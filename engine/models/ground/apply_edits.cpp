@@ -125,9 +125,9 @@ double blended(const GroundEdit& edit, double before_m, double after_m, double s
   return before_m + edit.strength * share * change_m;
 }
 
-// Masks read features of the guide that are at least so many cells wide. Its slope is that between
-// so many cells before and after a place: no farther away than the light of every node reads, so
-// masks need no more patches of a river network.
+// Masks read features of the guide that are at least kGuideCells cells wide. Its slope is that
+// between kGuideStep cells before and after a place: no farther away than the light of every node
+// reads, so masks need no more patches of a river network.
 constexpr double kGuideCells = 8;
 constexpr std::int64_t kGuideStep = 4;
 

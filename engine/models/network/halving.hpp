@@ -15,8 +15,8 @@ constexpr double kLargestShift = 0.42, kLongestEdge = 2.0;
 // The nodes of a level that nodes of the level below it in `fine` depend on.
 Rect coarse_for(const Rect& fine);
 
-// Makes the nodes `want` of the level below `coarse`, which must hold coarse_for(want); an assertion
-// fails if it does not, also in release.
+// Makes the nodes `want` of the level below `coarse`, which must hold coarse_for(want); an
+// assertion fails if it does not, also in release.
 NodePatch halve(const Scale& scale, LandFields& fields, const NodePatch& coarse, const Rect& want);
 
 // An axis-aligned square of units.

@@ -217,7 +217,8 @@ void RiverNetwork::each_part(const Lattice& at, GroundDetail detail, const Visit
     for (std::size_t k = first; k < end; ++k)
       out.push_back(static_cast<std::int32_t>(axis[k] * kUnitsPerCell - origin));
   };
-  network::TileKey key{level, 0, 0}, last{-2, 0, 0};
+  network::TileKey key{level, 0, 0};
+  std::optional<network::TileKey> last;
   std::shared_ptr<const network::Patch> patch;
   for (std::size_t row = 0, row_end = 0; row < at.z.size(); row = row_end) {
     row_end = end_of(at.z, row, one_z, key.j);

@@ -23,7 +23,8 @@ namespace psygen::models {
 namespace {
 
 // Distance in cells over which normals take slopes, to both sides of a vertex. Where heights are
-// costly, coarse nodes take them over the vertices of level 1, with a ninth of the samples.
+// costly, coarse nodes take them over the vertices of level 1: fewer samples by the square of its
+// stride.
 int normal_reach(const TerrainGrid& grid, const TerrainShape& shape) {
   const bool costly = shape.stack != nullptr && shape.stack->has_fixed_part();
   if (!costly || shape.node_level == 0 || grid.stride == 1) return 1;
