@@ -314,7 +314,7 @@ double TerrainShape::layer_work(LatticeSpan x, LatticeSpan z, double heights,
   work += erosion->work(side, side, spacing);
   const double points = erosion->guide_points(side, side, spacing);
   if (network != nullptr)
-    return work + network->work(points + heights, detail_of_width(erosion->narrowest_cells()));
+    return work + network->work(points, guide_detail(detail, erosion->lines_show_cells()));
   const int wide = NoiseGuide(noise, octaves(detail)).octaves(erosion->narrowest_cells());
   const auto line_count = static_cast<std::size_t>(std::sqrt(points));
   return work + noise.work(line_count, line_count, erosion->line_cells(), wide) +
