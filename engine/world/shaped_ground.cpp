@@ -143,7 +143,8 @@ class Shaper {
   }
 
   models::EditLayer take() {
-    constexpr std::size_t kHeightBytes = std::size_t{16} << 20;  // 2,000 blocks
+    // 2,000 blocks; a network's guide lines take some of it.
+    constexpr std::size_t kHeightBytes = std::size_t{16} << 20;
     if (layer_.ground.has_fixed_part())
       layer_.ground.heights = std::make_shared<core::ValueCache>(kHeightBytes);
     return std::move(layer_);

@@ -90,8 +90,8 @@ class ErosionGuide {
   virtual void heights(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows,
                        double narrowest_cells, std::span<float> values,
                        std::size_t stride) const = 0;
-  // True if the guide is so smooth that its value between lines follows from them. Then heights()
-  // is asked for lines alone.
+  // True if the guide is so smooth that its value between lines follows from them. Then erosion
+  // reads lines alone; masks read any places.
   virtual bool follows_from_lines() const { return false; }
 };
 

@@ -26,8 +26,8 @@ struct GroundStack {
   std::shared_ptr<const Erosion> erosion;       // of the world file; null: none
   GroundEdits shapes;  // of the world file; with the erosion part of the world's function
   GroundEdits edits;   // made by hand, over the shapes
-  // Keeps the heights of blocks with a fixed part (terrain/ground.hpp); null: nothing does. It
-  // changes no height.
+  // Keeps the heights of blocks with a fixed part (terrain/ground.hpp), and squares of guide lines
+  // of a network (terrain/shape.cpp); null: nothing does. It changes no height.
   std::shared_ptr<core::ValueCache> heights;
 
   // True if the ground is only noise.

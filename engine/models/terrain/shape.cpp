@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 
+#include "engine/core/assert.hpp"
 #include "engine/models/edits.hpp"
 #include "engine/models/kit/exact_math.hpp"
 #include "engine/models/kit/scratch.hpp"
@@ -77,7 +78,8 @@ GroundDetail guide_detail(GroundDetail of_ground, double narrowest_cells) {
 class NetworkGuide final : public ErosionGuide {
  public:
   static constexpr std::int64_t kSide = 32;  // lines of a square
-  // `cache` may be null.
+  // `cache` may be null, and must be for heights of other places than lines of an erosion: at least
+  // two, equally far apart, at multiples of their distance.
   NetworkGuide(const RiverNetwork& network, float unit_m, GroundDetail detail,
                core::ValueCache* cache)
       : network_(network), unit_m_(unit_m), detail_(detail), cache_(cache) {}
@@ -85,9 +87,9 @@ class NetworkGuide final : public ErosionGuide {
   void heights(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows,
                double narrowest_cells, std::span<float> values, std::size_t stride) const override {
     const GroundDetail detail = guide_detail(detail_, narrowest_cells);
-    const std::int64_t step = columns.size() < 2 ? 0 : columns[1] - columns[0];
-    if (cache_ == nullptr || !are_lines(columns, step) || !are_lines(rows, step))
-      return evaluate(columns, rows, detail, values, stride);
+    if (cache_ == nullptr) return evaluate(columns, rows, detail, values, stride);
+    const std::int64_t step = columns[1] - columns[0];
+    PSYGEN_ASSERT(are_lines(columns, step) && are_lines(rows, step), "only lines have a cache");
     const Squares x(columns, step), z(rows, step);
     for (std::int64_t j = z.first; j <= z.last; ++j) {
       for (std::int64_t i = x.first; i <= x.last; ++i)
@@ -96,10 +98,9 @@ class NetworkGuide final : public ErosionGuide {
   }
 
  private:
-  // Masks ask for the samples of heights, too. Lines are at least four cells apart.
   static bool are_lines(std::span<const std::int64_t> axis, std::int64_t step) {
-    if (step < 4 || axis.front() % step != 0) return false;
-    return std::ranges::adjacent_find(axis, [step](std::int64_t a, std::int64_t b) {
+    return axis.front() % step == 0 &&
+           std::ranges::adjacent_find(axis, [step](std::int64_t a, std::int64_t b) {
              return b - a != step;
            }) == axis.end();
   }
