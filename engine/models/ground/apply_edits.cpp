@@ -2,6 +2,7 @@
 // quadtree to the edits that reach the samples.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "engine/core/assert.hpp"
@@ -125,31 +126,46 @@ double blended(const GroundEdit& edit, double before_m, double after_m, double s
   return before_m + edit.strength * share * change_m;
 }
 
-// Masks read features of the guide that are at least kGuideCells cells wide. Its slope is that
-// between kGuideStep cells before and after a place: no farther away than the light of every node
-// reads, so masks need no more patches of a river network.
-constexpr double kGuideCells = 8;
+struct Range {
+  std::size_t first, end;
+  bool empty() const { return first >= end; }
+  std::size_t count() const { return end - first; }
+  Range with(const Range& o) const { return {std::min(first, o.first), std::max(end, o.end)}; }
+  std::span<const std::int64_t> of(std::span<const std::int64_t> axis) const {
+    return axis.subspan(first, count());
+  }
+};
+
+// A rectangle of samples.
+struct Samples {
+  Range columns, rows;
+  std::size_t count() const { return columns.count() * rows.count(); }
+};
+
+// Masks read the slope of the guide between so many cells before and after a place: no farther away
+// than the light of every node reads, so masks need no more patches of a river network.
 constexpr std::int64_t kGuideStep = 4;
 
-// The guide at the samples of one edit, row by row.
+// The guide at some of the samples (all_x[i], all_z[k]), for masks with at most so many reads.
 class GuideRows {
  public:
-  GuideRows(const GroundMask& mask, const ErosionGuide& guide, const GroundScale& scale,
-            std::span<const std::int64_t> x, std::span<const std::int64_t> z)
-      : mask_(mask),
-        unit_m_(scale.unit_m),
+  GuideRows(const ErosionGuide& guide, const GroundScale& scale,
+            std::span<const std::int64_t> all_x, std::span<const std::int64_t> all_z,
+            const Samples& at, int reads)
+      : unit_m_(scale.unit_m),
         run_m_(2 * kGuideStep * scale.cell_m),
-        count_(x.size() * z.size()),
-        memory_((mask.slope.is_limited() ? 5 : 1) * count_ * sizeof(float)) {
+        at_(at),
+        memory_(static_cast<std::size_t>(reads) * at.count() * sizeof(float)) {
+    const auto x = at.columns.of(all_x), z = at.rows.of(all_z);
     const auto fill = [&](std::size_t i, std::span<const std::int64_t> columns,
                           std::span<const std::int64_t> rows) {
-      guide.heights(columns, rows, kGuideCells, plane(i), x.size());
+      guide.heights(columns, rows, GroundMask::kGuideCells, plane(i), x.size());
     };
     fill(0, x, z);
-    if (!mask.slope.is_limited()) return;
+    if (reads == 1) return;
     std::vector<std::int64_t> moved;
-    const auto by = [&moved](std::span<const std::int64_t> at, std::int64_t step) {
-      moved.assign(at.begin(), at.end());
+    const auto by = [&moved](std::span<const std::int64_t> axis, std::int64_t step) {
+      moved.assign(axis.begin(), axis.end());
       for (std::int64_t& i : moved)
         i += step;
       return std::span<const std::int64_t>(moved);
@@ -160,31 +176,26 @@ class GuideRows {
     fill(4, x, by(z, -kGuideStep));
   }
 
-  // The ranges of the mask at a sample.
-  double share(std::size_t i) const {
+  // The ranges of a mask at a sample of all.
+  double share(const GroundMask& mask, std::size_t column, std::size_t row) const {
+    const std::size_t i = (row - at_.rows.first) * at_.columns.count() + column - at_.columns.first;
     const double height_m = double{plane(0)[i]} * unit_m_;
-    if (!mask_.slope.is_limited()) return mask_.on(height_m, 0);
+    if (!mask.slope.is_limited()) return mask.on(height_m, 0);
     const auto rise_m = [&](std::size_t to, std::size_t from) {
       return (double{plane(to)[i]} - double{plane(from)[i]}) * unit_m_;
     };
     const double x = rise_m(1, 2) / run_m_, z = rise_m(3, 4) / run_m_;
-    return mask_.on(height_m, std::sqrt(x * x + z * z));
+    return mask.on(height_m, std::sqrt(x * x + z * z));
   }
 
  private:
   std::span<float> plane(std::size_t i) const {
-    return {static_cast<float*>(memory_.get()) + i * count_, count_};
+    return {static_cast<float*>(memory_.get()) + i * at_.count(), at_.count()};
   }
 
-  const GroundMask& mask_;
   double unit_m_, run_m_;
-  std::size_t count_;
+  Samples at_;
   ScratchMemory memory_;
-};
-
-struct Range {
-  std::size_t first, end;
-  bool empty() const { return first >= end; }
 };
 
 // One call of GroundEdits::apply(): walks down the quadtree with the samples of each square.
@@ -249,19 +260,46 @@ class Application {
   // An edit with the samples that it reaches.
   struct Act {
     const GroundEdit* edit;
-    Range columns, rows;
+    Samples at;
+    int guide_reads() const { return edit->mask ? edit->mask->guide_reads() : 0; }
   };
   void act(Range columns, Range rows) {
     ordered_.clear();
     for (const GroundEdit* edit : active_) {
       const core::WorldPosition& centre = edit->centre;
-      const Act act{edit, within(*edit, x_, columns, centre.block.x, centre.local.x),
-                    within(*edit, z_, rows, centre.block.z, centre.local.z)};
-      if (!act.columns.empty() && !act.rows.empty()) ordered_.push_back(act);
+      const Act act{edit,
+                    {within(*edit, x_, columns, centre.block.x, centre.local.x),
+                     within(*edit, z_, rows, centre.block.z, centre.local.z)}};
+      if (!act.at.columns.empty() && !act.at.rows.empty()) ordered_.push_back(act);
     }
     std::ranges::sort(ordered_, {}, [](const Act& act) { return act.edit->order(); });
-    for (const Act& act : ordered_)
-      apply(*act.edit, act.columns, act.rows);
+    const std::optional<GuideRows> shared = shared_guide();
+    for (const Act& act : ordered_) {
+      std::optional<GuideRows> own;
+      if (!shared && act.guide_reads() > 0) own.emplace(guide_at(act.at, act.guide_reads()));
+      apply(*act.edit, act.at, shared ? &*shared : own ? &*own : nullptr);
+    }
+  }
+
+  // Reads the guide for all masked edits at once, unless one by one they read less.
+  std::optional<GuideRows> shared_guide() const {
+    Samples all{};
+    int reads = 0;
+    std::size_t apart = 0;
+    for (const Act& act : ordered_) {
+      const int own = act.guide_reads();
+      if (own == 0) continue;
+      all = reads == 0 ? act.at
+                       : Samples{all.columns.with(act.at.columns), all.rows.with(act.at.rows)};
+      reads = std::max(reads, own);
+      apart += static_cast<std::size_t>(own) * act.at.count();
+    }
+    if (reads == 0 || static_cast<std::size_t>(reads) * all.count() > apart) return std::nullopt;
+    return guide_at(all, reads);
+  }
+  GuideRows guide_at(const Samples& at, int reads) const {
+    PSYGEN_ASSERT(guide_ != nullptr, "masks of height and slope have a guide");
+    return {*guide_, scale_, x_, z_, at, reads};
   }
 
   // Metres from the centre of an edit to a lattice point, along one axis. Exact, with the same bits
@@ -285,14 +323,9 @@ class Application {
             range.first + static_cast<std::size_t>(end - all.begin())};
   }
 
-  void apply(const GroundEdit& edit, Range columns, Range rows) {
+  void apply(const GroundEdit& edit, const Samples& at, const GuideRows* guide) {
     const core::WorldPosition& from = edit.origin();
-    std::optional<GuideRows> guide;
-    if (edit.mask && edit.mask->reads_guide()) {
-      PSYGEN_ASSERT(guide_ != nullptr, "masks of height and slope have a guide");
-      guide.emplace(*edit.mask, *guide_, scale_, part(x_, columns), part(z_, rows));
-    }
-    std::size_t sample = 0;
+    const auto& [columns, rows] = at;
     for (std::size_t k = rows.first; k < rows.end; ++k) {
       const double dz = away_m(z_[k], from.block.z, from.local.z);
       for (std::size_t i = columns.first; i < columns.end; ++i) {
@@ -304,7 +337,7 @@ class Application {
           double share = edit.mask ? edit.mask->at({world_m(x_[i]), world_m(z_[k])},
                                                    share_of_sides(edit, along_sides(edit, dx, dz)))
                                    : 1;
-          if (guide) share *= guide->share(sample++);
+          if (edit.mask && edit.mask->reads_guide()) share *= guide->share(*edit.mask, i, k);
           height_m = blended(edit, before_m, height_m, share);
         }
         value = std::clamp(static_cast<float>(height_m / scale_.unit_m), 0.0F, scale_.highest);
@@ -313,9 +346,6 @@ class Application {
   }
 
   double world_m(std::int64_t at) const { return static_cast<double>(at) * scale_.cell_m; }
-  static std::span<const std::int64_t> part(std::span<const std::int64_t> at, Range range) {
-    return at.subspan(range.first, range.end - range.first);
-  }
 
   const GroundScale& scale_;
   std::span<const std::int64_t> x_, z_;

@@ -197,10 +197,14 @@ GroundCell::Summary max_in(const Cell* cell, const Area& area, double block_m) {
   return most;
 }
 
-// Time that a mask takes for a height, in the same units as its edit. Measured.
+// Time that a mask takes for a height without the guide, in the same units as its edit. Measured.
 double weight_of(const GroundMask& mask) {
   return (mask.picture ? 3 : 0) + (mask.noise_m > 0 ? 14 : 0) + (mask.reads_guide() ? 2 : 0) +
          (mask.slope.is_limited() ? 1 : 0);
+}
+
+double guide_reads_of(const GroundEdit& edit) {
+  return edit.mask ? edit.mask->guide_reads() : 0;
 }
 
 // Time that an edit takes for a height, in units of a simple edit. Measured.
@@ -214,21 +218,26 @@ double weight_of(const GroundEdit& edit) {
   return edit.mask ? weight + weight_of(*edit.mask) : weight;
 }
 
-// Returns the sum of the weighted areas of edits within an area, in blocks².
-double work_in(const Cell* cell, const Area& area, double block_m) {
-  if (cell == nullptr) return 0;
+// Adds the weighted areas of edits within an area to `sum`, in blocks².
+void add_work_in(const Cell* cell, const Area& area, double block_m, HeightWork& sum) {
+  if (cell == nullptr) return;
   const Area own = area_of(cell->place);
-  if (!own.touches(area)) return 0;
-  if (area.holds(own)) return cell->summary.work_m2 / (block_m * block_m);
-  double sum = 0;
+  if (!own.touches(area)) return;
+  if (area.holds(own)) {
+    sum.edits += cell->summary.work_m2 / (block_m * block_m);
+    sum.guide_reads += cell->summary.guide_m2 / (block_m * block_m);
+    return;
+  }
   if (cell->value) {
     const Area part = own.common(area);
-    for (const EditPtr& edit : cell->value->edits)
-      sum += weight_of(*edit) * area_of(*edit, edit->reach_m(), block_m).common(part).size();
+    for (const EditPtr& edit : cell->value->edits) {
+      const double size = area_of(*edit, edit->reach_m(), block_m).common(part).size();
+      sum.edits += weight_of(*edit) * size;
+      sum.guide_reads += guide_reads_of(*edit) * size;
+    }
   }
   for (const auto& quarter : cell->quarters)
-    sum += work_in(quarter.get(), area, block_m);
-  return sum;
+    add_work_in(quarter.get(), area, block_m, sum);
 }
 
 }  // namespace
@@ -242,6 +251,7 @@ void GroundCell::Summary::add(const Summary& quarter) {
   below_change_m = std::max(below_change_m, quarter.change_m + quarter.below_change_m);
   below_steepness = std::max(below_steepness, quarter.steepness + quarter.below_steepness);
   work_m2 += quarter.work_m2;
+  guide_m2 += quarter.guide_m2;
   has_roads = has_roads || quarter.has_roads;
   has_water = has_water || quarter.has_water;
 }
@@ -258,7 +268,9 @@ GroundCell::Summary GroundCell::summary() const {
   for (const EditPtr& edit : edits) {
     sum.change_m += edit->max_m;
     sum.steepness += steepness_of(*edit);
-    sum.work_m2 += weight_of(*edit) * 4 * edit->reach_m() * edit->reach_m();
+    const double area_m2 = 4 * edit->reach_m() * edit->reach_m();
+    sum.work_m2 += weight_of(*edit) * area_m2;
+    sum.guide_m2 += guide_reads_of(*edit) * area_m2;
     sum.has_roads = sum.has_roads || edit->road != nullptr;
     sum.has_water = sum.has_water || is_water(edit->change);
   }
@@ -364,13 +376,19 @@ GroundEdits::Change GroundEdits::max_change_in(const QuadCoord& node, double blo
           double{most.steepness} + double{most.below_steepness}};
 }
 
-double GroundEdits::edits_per_height(const GroundScale& scale, LatticeSpan x, LatticeSpan z) const {
+HeightWork GroundEdits::work_per_height(const GroundScale& scale, LatticeSpan x,
+                                        LatticeSpan z) const {
   const auto block = [&scale](std::int64_t vertex) {
     return static_cast<double>(vertex) / static_cast<double>(scale.cells_per_block) + 0x1.0p31;
   };
   const Area area{block(x.first), block(z.first), block(x.last), block(z.last)};
-  if (!(area.size() > 0)) return 0;
-  return work_in(cells_.root(), area, scale.block_m()) / area.size();
+  HeightWork work;
+  if (!(area.size() > 0)) return work;
+  add_work_in(cells_.root(), area, scale.block_m(), work);
+  work.edits /= area.size();
+  // Masks over the same places share what they read.
+  work.guide_reads = std::min(work.guide_reads / area.size(), double{GroundMask::kMaxGuideReads});
+  return work;
 }
 
 }  // namespace psygen::models

@@ -148,14 +148,21 @@ struct GroundCell {
   struct Summary {
     float change_m = 0, steepness = 0;              // sum over this square's own edits
     float below_change_m = 0, below_steepness = 0;  // largest value of one of its quarters
-    double work_m2 = 0;  // of all edits in the square: their areas, weighted by the time for a
-                         // height
+    // Of all edits in the square: their areas, weighted by the time for a height, and by the
+    // heights of the guide that their masks read for one.
+    double work_m2 = 0, guide_m2 = 0;
     bool has_roads = false, has_water = false;
     void add(const Summary& quarter);
   };
   bool empty() const { return edits.empty(); }
   std::uint64_t hash() const;
   Summary summary() const;
+};
+
+// Estimate of the work of GroundEdits::apply() on a height, as a mean over a rectangle.
+struct HeightWork {
+  double edits = 0;        // in units of the time for a simple edit; a stamp counts as three
+  double guide_reads = 0;  // heights of the guide that masks read
 };
 
 // Edits of the ground in the order of their action: the shapes of a world file, or those that a
@@ -208,10 +215,9 @@ class GroundEdits {
   };
   Change max_change_in(const QuadCoord& node, double block_m) const;
 
-  // Estimate of the edits that apply() makes on a height, as a mean over the rectangle, in units of
-  // the time for a simple edit; a stamp counts as three. Up to four times too high if edits are
-  // much smaller than the rectangle. O(log n + edits at its border).
-  double edits_per_height(const GroundScale& scale, LatticeSpan x, LatticeSpan z) const;
+  // Up to four times too high if edits are much smaller than the rectangle. O(log n + edits at its
+  // border).
+  HeightWork work_per_height(const GroundScale& scale, LatticeSpan x, LatticeSpan z) const;
 
   // Applies the edits to heights at the lattice points (x[i], z[k]), values[k · stride + i]. x and
   // z ascend. Skips edits of a radius below `narrowest_m`. Linear in the heights that change. Masks

@@ -68,8 +68,14 @@ struct GroundMask {
   FadedRange height_m;        // of the guide
   FadedRange slope;           // of the guide: rise over run
 
-  // True if it depends on the guide.
-  bool reads_guide() const { return height_m.is_limited() || slope.is_limited(); }
+  // Number of heights of the guide that it reads for a place; slopes read four around it.
+  static constexpr int kMaxGuideReads = 5;
+  int guide_reads() const {
+    return slope.is_limited() ? kMaxGuideReads : height_m.is_limited() ? 1 : 0;
+  }
+  bool reads_guide() const { return guide_reads() > 0; }
+  // Features of the guide narrower than this many cells are left out.
+  static constexpr double kGuideCells = 8;
   // The picture and the patches at a place in metres of the world, 0 … 1. `own` is the place in the
   // rectangle of the shape: (0, 0) is the first corner of its image, (1, 1) the last one.
   double at(glm::dvec2 place_m, glm::dvec2 own) const;

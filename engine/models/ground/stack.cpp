@@ -88,8 +88,10 @@ double GroundStack::error_m(const QuadCoord& node, double spacing_m, double bloc
   return std::min(a.change_m + b.change_m, (a.steepness + b.steepness) * spacing_m);
 }
 
-double GroundStack::edits_per_height(const GroundScale& scale, LatticeSpan x, LatticeSpan z) const {
-  return shapes.edits_per_height(scale, x, z) + edits.edits_per_height(scale, x, z);
+HeightWork GroundStack::work_per_height(const GroundScale& scale, LatticeSpan x,
+                                        LatticeSpan z) const {
+  const HeightWork a = shapes.work_per_height(scale, x, z), b = edits.work_per_height(scale, x, z);
+  return {a.edits + b.edits, a.guide_reads + b.guide_reads};
 }
 
 void GroundStack::apply(const GroundScale& scale, std::span<const std::int64_t> x,

@@ -75,9 +75,9 @@ struct GroundStack {
   // Largest distance between the ground and a mesh of the node with vertices `spacing_m` apart,
   // because of shapes and edits between them. An upper bound in metres; 0: neither.
   double error_m(const QuadCoord& node, double spacing_m, double block_m) const;
-  // Estimate of the time that shapes and edits take for a height, as a mean over the rectangle, in
-  // units of the time for a simple edit. It never depends on a cache.
-  double edits_per_height(const GroundScale& scale, LatticeSpan x, LatticeSpan z) const;
+  // Estimate of the work of shapes and edits on a height, as a mean over the rectangle. It never
+  // depends on a cache.
+  HeightWork work_per_height(const GroundScale& scale, LatticeSpan x, LatticeSpan z) const;
   // Changes eroded heights at the lattice points (x[i], z[k]), values[k · stride + i], by shapes
   // and edits. x and z ascend. Masks read the guide of the ground below.
   void apply(const GroundScale& scale, std::span<const std::int64_t> x,

@@ -299,11 +299,18 @@ double TerrainShape::layer_work(LatticeSpan x, LatticeSpan z, double heights,
                                 GroundDetail detail) const {
   constexpr double kWorkPerEdit = 8;
   if (stack == nullptr) return 0;
-  double work = kWorkPerEdit * heights * stack->edits_per_height(scale(), x, z);
+  const HeightWork of_height = stack->work_per_height(scale(), x, z);
+  double work = kWorkPerEdit * heights * of_height.edits;
   const auto side = static_cast<std::size_t>(std::sqrt(heights));
   const double spacing =
       static_cast<double>(x.last - x.first) / static_cast<double>(std::max<std::size_t>(side, 1));
   const RiverNetwork* const network = stack->network.get();
+  work += network != nullptr
+              ? network->work(heights * of_height.guide_reads,
+                              guide_detail(detail, GroundMask::kGuideCells))
+              : of_height.guide_reads *
+                    noise.work(side, side, spacing,
+                               NoiseGuide(noise, kMaxOctaves).octaves(GroundMask::kGuideCells));
   if (network != nullptr)
     // Neighbours share patches, also those of light from afar.
     work += network->work(heights, detail) +

@@ -10,6 +10,7 @@
 
 #include "engine/models/edits.hpp"
 #include "engine/models/ground/erosion.hpp"
+#include "engine/models/network/network.hpp"
 #include "engine/models/terrain/ground.hpp"
 #include "engine/models/terrain/shape.hpp"
 #include "engine/models/terrain/terrain.hpp"
@@ -396,6 +397,73 @@ TEST_F(MaskedGround, MasksCostTime) {
   slope.slope.max = 1;
   EXPECT_GT(steps_of(&patches), steps_of(nullptr));
   EXPECT_GT(steps_of(&slope), steps_of(nullptr));
+}
+
+// The reads are priced apart: those of a network take far more time than those of noise, and masks
+// over the same places share them.
+TEST_F(MaskedGround, ReadsOfTheGuideCostTime) {
+  GroundMask slope;
+  slope.slope.max = 1;
+  const auto more = [&](bool over_network, int masks) {
+    layer = {};
+    if (over_network)
+      layer.ground.network = *RiverNetwork::create(
+          {.seed = 11, .root_spacing_m = 1024, .halvings = 5},
+          {.cell_m = 1, .cells_per_block = 63, .relief_m = 120}, std::make_shared<NetworkStore>());
+    const double bare = type->steps(node(0, 0, 0), 0);
+    GroundEdit edit;
+    edit.radius_m = 500;
+    edit.mask = std::make_shared<const GroundMask>(slope);
+    for (int i = 0; i < masks; ++i)
+      add(edit);
+    return type->steps(node(0, 0, 0), 0) - bare;
+  };
+  EXPECT_GT(more(true, 1), 4 * more(false, 1));
+  EXPECT_LT(more(true, 3), 1.5 * more(true, 1));
+  EXPECT_NEAR(more(true, 3) - more(true, 2), more(false, 3) - more(false, 2), 1);
+}
+
+// Counts the heights that masks read of it.
+struct CountedGuide final : ErosionGuide {
+  mutable std::size_t reads = 0;
+  void heights(std::span<const std::int64_t> columns, std::span<const std::int64_t> rows, double,
+               std::span<float> values, std::size_t stride) const override {
+    reads += columns.size() * rows.size();
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      for (std::size_t c = 0; c < columns.size(); ++c)
+        values[r * stride + c] = 0.01F * static_cast<float>(columns[c] + 2 * rows[r]);
+    }
+  }
+};
+
+TEST_F(MaskedGround, EditsOverTheSamePlacesReadTheGuideOnce) {
+  const std::vector<std::int64_t> at = range(0, 63);
+  const auto reads = [&](std::initializer_list<GroundEdit> edits) {
+    layer = {};
+    for (const GroundEdit& edit : edits)
+      add(edit);
+    const CountedGuide guide;
+    std::vector<float> values(at.size() * at.size());
+    layer.ground.edits.apply({}, at, at, values, at.size(), 0, &guide);
+    return guide.reads;
+  };
+  GroundMask slope, height;
+  slope.slope.max = 1;
+  height.height_m.min = 0.1;
+  GroundEdit wide;
+  wide.square = true;
+  wide.radius_m = 500;
+  wide.mask = std::make_shared<const GroundMask>(slope);
+  GroundEdit low = wide;
+  low.mask = std::make_shared<const GroundMask>(height);
+  EXPECT_EQ(reads({low}), 63 * 63U);
+  EXPECT_EQ(reads({wide}), 5 * 63 * 63U);
+  EXPECT_EQ(reads({wide, low, wide}), 5 * 63 * 63U);
+  GroundEdit corner = wide, other = low;
+  corner.radius_m = other.radius_m = 4;
+  corner.centre.local = {5, 0, 5};
+  other.centre.local = {55, 0, 55};
+  EXPECT_EQ(reads({corner, other}), 6 * 81U) << "nothing between them";
 }
 
 }  // namespace
