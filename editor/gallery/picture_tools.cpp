@@ -91,11 +91,10 @@ std::optional<ViewState> PictureTools::view_state() const {
   const world::World& world = view_.session()->scene().world();
   const core::CameraPose& pose = view_.camera().pose();
   const core::WorldPosition& at = pose.position;
-  const double block_m = world.block_size_m();
+  const glm::dvec2 at_m = world.metres(at);
   const double surface_m = world::surface_height_m(world, at);
   ViewState state;
-  state.place.at_m = {at.block.x * block_m + at.local.x, at.local.y,
-                      at.block.z * block_m + at.local.z};
+  state.place.at_m = {at_m.x, at.local.y, at_m.y};
   state.place.yaw = pose.yaw;
   state.place.pitch = pose.pitch;
   state.above_m = std::max(at.local.y - surface_m, 1.0);

@@ -27,8 +27,8 @@ QString picture_command(app::Session& session, const std::filesystem::path& worl
                         const core::CameraPose& pose) {
   const scene::Scene& scene = session.scene();
   const world::World& world = scene.world();
-  const double block_m = world.block_size_m();
   const core::WorldPosition& at = pose.position;
+  const glm::dvec2 at_m = world.metres(at);
   const double surface_m = world::surface_height_m(world, at);
   const std::string_view preset = render::to_string(session.renderer().preset());
   QString file = to_qstring(world_file.string());
@@ -37,8 +37,8 @@ QString picture_command(app::Session& session, const std::filesystem::path& worl
              "psygen picture --world %1 --at=%2,%3 --height %4 --yaw %5 --pitch=%6 --preset %7 "
              "--error %8 --out picture.png")
       .arg(file)
-      .arg(at.block.x * block_m + at.local.x, 0, 'f', 1)
-      .arg(at.block.z * block_m + at.local.z, 0, 'f', 1)
+      .arg(at_m.x, 0, 'f', 1)
+      .arg(at_m.y, 0, 'f', 1)
       .arg(std::max(at.local.y - surface_m, 0.1), 0, 'f', 1)
       .arg(glm::degrees(pose.yaw), 0, 'f', 1)
       .arg(glm::degrees(pose.pitch), 0, 'f', 1)

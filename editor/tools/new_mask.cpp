@@ -83,10 +83,7 @@ glm::dvec2 middle_of_view(const core::CameraPose& pose, const world::World& worl
       std::max(0.0, pose.position.local.y - world::surface_height_m(world, pose.position));
   const double fall = -std::tan(pose.pitch);
   const double away_m = fall > kMinFall ? std::min(above_m / fall, max_m) : max_m;
-  const double block_m = world.block_size_m();
-  const glm::dvec2 camera_m(double(pose.position.block.x) * block_m + pose.position.local.x,
-                            double(pose.position.block.z) * block_m + pose.position.local.z);
-  return camera_m + away_m * glm::dvec2(std::sin(pose.yaw), -std::cos(pose.yaw));
+  return world.metres(pose.position) + away_m * glm::dvec2(std::sin(pose.yaw), -std::cos(pose.yaw));
 }
 
 }  // namespace psygen::editor

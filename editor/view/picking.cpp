@@ -131,9 +131,7 @@ std::optional<glm::dvec2> GroundRays::at(const scene::Scene& scene, const core::
   ray.models = ray.objects = false;
   const auto hit = ground_->queries.cast(ray);
   if (!hit || hit->kind != query::HitKind::kGround) return std::nullopt;
-  const double block_m = ground_->world.block_size_m();
-  const core::WorldPosition& at = hit->position;
-  return glm::dvec2(at.block.x * block_m + at.local.x, at.block.z * block_m + at.local.z);
+  return ground_->world.metres(hit->position);
 }
 
 std::optional<Selection> relocate_selection(const Selection& before, const scene::Scene& scene) {

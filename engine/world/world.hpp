@@ -197,6 +197,11 @@ struct World {
   core::WorldPosition position(glm::dvec2 at_m) const {
     return core::normalised({{0, 0}, {at_m.x, 0, at_m.y}}, block_size_m());
   }
+  // The inverse: x and z of a position, in metres from the corner of block (0, 0).
+  glm::dvec2 metres(const core::WorldPosition& at) const {
+    const double block_m = block_size_m();
+    return {at.block.x * block_m + at.local.x, at.block.z * block_m + at.local.z};
+  }
   // True if a block exists; true if the world is endless along any axis.
   bool contains(core::BlockCoord block) const;
   bool is_endless() const { return blocks_x == 0 || blocks_z == 0; }

@@ -257,7 +257,7 @@ TEST(Streams, AreHeardNearRiversAndLoudestAtFalls) {
   const world::World& world = land::river_world();
   query::World query(world, land::registry());
   const auto heard = [&](double x, double z) {
-    core::WorldPosition at = land::position_in(world, {x, z});
+    core::WorldPosition at = world.position({x, z});
     at.local.y = query.ground(at)->surface_m;
     return loudest_stream(query, at);
   };

@@ -216,9 +216,7 @@ void take_model(Photographer& take) {
 class Ground {
  public:
   explicit Ground(MainWindow& window) : before_(window.view().camera().pose()), window_(window) {
-    const double block_m = window.document().world().block_size_m();
-    const auto& at = before_.position;
-    const glm::dvec2 eye_m{at.block.x * block_m + at.local.x, at.block.z * block_m + at.local.z};
+    const glm::dvec2 eye_m = window.document().world().metres(before_.position);
     const glm::vec3 ahead = core::forward_of(before_);
     middle_m_ = eye_m + glm::normalize(glm::dvec2(ahead.x, ahead.z)) * kAheadM;
     core::CameraPose pose = before_;

@@ -19,7 +19,6 @@ namespace {
 using world::World;
 using world::testing::network_text;
 using world::testing::parsed;
-using world::testing::position_in;
 
 const World& network_world() {
   static const World world = parsed(network_text());
@@ -28,7 +27,7 @@ const World& network_world() {
 
 RiverMap map_of(const World& world, glm::dvec2 at_m, glm::dvec2 blocks = glm::dvec2(0.0)) {
   const std::atomic<bool> never{false};
-  return make_river_map(*network_of(world), position_in(world, at_m), blocks, never);
+  return make_river_map(*network_of(world), world.position(at_m), blocks, never);
 }
 
 core::WorldPosition place(const World& world, const RiverMap& map, const glm::vec3& from_anchor) {
@@ -139,7 +138,7 @@ void follow(RiverOverlay& overlay, const World& world, const core::WorldPosition
 
 TEST(RiverOverlay, FollowsSwitchCameraAndWorld) {
   const World& world = network_world();
-  const core::WorldPosition eye = position_in(world, {3000, 2000});
+  const core::WorldPosition eye = world.position({3000, 2000});
   RiverOverlay overlay;
   std::vector<render::Line> lines;
   const auto add = [&](const core::WorldPosition& from) {
@@ -166,11 +165,11 @@ TEST(RiverOverlay, FollowsSwitchCameraAndWorld) {
   EXPECT_EQ(overlay.map(), before) << "a small move keeps the map";
   add(aside);
   EXPECT_NEAR(double{first.x - lines.front().from.x}, 10, 0.6);
-  follow(overlay, world, position_in(world, {3000 + before->near_m, 2000}));
+  follow(overlay, world, world.position({3000 + before->near_m, 2000}));
   EXPECT_NE(overlay.map(), before);
   const auto far = overlay.map();
   const World other = parsed(world::testing::replaced(network_text(), "seed = 11", "seed = 12"));
-  follow(overlay, other, position_in(other, {3000 + before->near_m, 2000}));
+  follow(overlay, other, other.position({3000 + before->near_m, 2000}));
   EXPECT_NE(overlay.map(), far) << "another network";
   follow(overlay, parsed(world::testing::kNetworkLand), eye);
   EXPECT_EQ(overlay.map(), nullptr) << "no network";
@@ -185,7 +184,7 @@ TEST(WaterFacts, TellBodyDepthSpeedAndDischarge) {
   const World& world = world::testing::river_world();
   query::World queries(world, world::testing::registry());
   const auto at = [&](double x_m, double z_m) {
-    return water_facts(queries, position_in(world, {x_m, z_m}));
+    return water_facts(queries, world.position({x_m, z_m}));
   };
   const auto river = at(2020, 1735), lake = at(1750, 1670), sea = at(1545, 1655);
   ASSERT_TRUE(river && lake && sea);
@@ -193,7 +192,7 @@ TEST(WaterFacts, TellBodyDepthSpeedAndDischarge) {
   EXPECT_NEAR(river->depth_m, 0.6, 0.3);
   EXPECT_GT(river->speed_m_s, 0.1);
   EXPECT_EQ(river->discharge_m3_s,
-            *world::river_discharge_m3_s(world, position_in(world, {2020, 1735})));
+            *world::river_discharge_m3_s(world, world.position({2020, 1735})));
   EXPECT_EQ(lake->kind, WaterKind::kLake);
   EXPECT_GT(lake->surface_m, world.water.level_m);
   EXPECT_EQ(lake->discharge_m3_s, 0);

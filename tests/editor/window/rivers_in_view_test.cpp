@@ -75,9 +75,7 @@ TEST_F(RiversInView, TheStatusBarTellsTheWaterUnderThePointer) {
   auto* label = window_->findChild<QLabel*>("water");
   ASSERT_NE(label, nullptr);
   EXPECT_EQ(label->text(), "");
-  const auto pixel =
-      window_->view().pixel_of({river_->block.x * shown().block_size_m() + river_->local.x,
-                                river_->block.z * shown().block_size_m() + river_->local.z});
+  const auto pixel = window_->view().pixel_of(shown().metres(*river_));
   ASSERT_TRUE(pixel);
   QTest::mouseMove(&window_->view(), pixel->toPoint());
   ASSERT_TRUE(QTest::qWaitFor([&] { return !label->text().isEmpty(); }, kMaxMs));
@@ -86,12 +84,10 @@ TEST_F(RiversInView, TheStatusBarTellsTheWaterUnderThePointer) {
 }
 
 TEST_F(RiversInView, ARoadThroughARiverGetsOneMessage) {
-  const double block_m = shown().block_size_m();
-  const double x_m = river_->block.x * block_m + river_->local.x;
-  const double z_m = river_->block.z * block_m + river_->local.z;
+  const glm::dvec2 m = shown().metres(*river_);
   const std::string text =
       document().text() + fmt::format("\n[[road]]\npoints_m = [[{}, {}], [{}, {}], [{}, {}]]\n",
-                                      x_m - 60, z_m - 50, x_m, z_m, x_m + 60, z_m + 50);
+                                      m.x - 60, m.y - 50, m.x, m.y, m.x + 60, m.y + 50);
   const auto* const delay = window_->findChild<QTimer*>("warnings");
   ASSERT_NE(delay, nullptr);
   const auto set_text = [&](const std::string& next) {

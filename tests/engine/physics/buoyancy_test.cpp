@@ -18,7 +18,7 @@ Scene in_river() {
   return Scene(query::testing::Loaded::parsed(world::testing::river_text()));
 }
 core::WorldPosition position_in(const Scene& scene, glm::dvec2 at_m, double height_m) {
-  core::WorldPosition at = world::testing::position_in(scene.loaded.world, at_m);
+  core::WorldPosition at = scene.loaded.world.position(at_m);
   at.local.y = height_m;
   return at;
 }

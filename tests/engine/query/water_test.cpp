@@ -11,7 +11,6 @@ namespace psygen::query {
 namespace {
 
 using testing::Loaded;
-using world::testing::position_in;
 using world::testing::river_text;
 
 class WaterQuery : public ::testing::Test {
@@ -20,7 +19,7 @@ class WaterQuery : public ::testing::Test {
   World query_{loaded_.world, loaded_.registry};
 
   core::WorldPosition at(glm::dvec2 at_m, double height_m) const {
-    core::WorldPosition place = position_in(loaded_.world, at_m);
+    core::WorldPosition place = loaded_.world.position(at_m);
     place.local.y = height_m;
     return place;
   }

@@ -16,7 +16,6 @@ using testing::kBrookLand;
 using testing::kLakeTable;
 using testing::kTheLake;
 using testing::parsed;
-using testing::position_in;
 using testing::replaced;
 
 std::string refusal(const std::string& tables, const std::string& land = kBrookLand) {
@@ -39,7 +38,7 @@ TEST(Lake, LiesAtTheLowestGroundOfItsOutlineByDefault) {
     lowest_m = std::min(
         lowest_m, ground_in(base, {1000 + 100 * std::cos(angle), 1000 + 100 * std::sin(angle)}));
   }
-  const WaterPoint middle = water_at(world, position_in(world, {1000, 1000}));
+  const WaterPoint middle = water_at(world, world.position({1000, 1000}));
   EXPECT_EQ(middle.body, kTheLake);
   EXPECT_NEAR(middle.surface_m, lowest_m, 0.15);
   EXPECT_NEAR(middle.depth_m, 6, 0.02);
@@ -49,12 +48,12 @@ TEST(Lake, LiesAtTheLowestGroundOfItsOutlineByDefault) {
 TEST(Lake, IsWetInsideItsOutlineAndDryOutside) {
   for (const char* level : {"", "spill_m = 60\n", "spill_m = 90\n"}) {
     const World world = round_lake(level);
-    const double level_m = water_at(world, position_in(world, {1000, 1000})).surface_m;
+    const double level_m = water_at(world, world.position({1000, 1000})).surface_m;
     int wet = 0, dry = 0;
     for (double z = -140; z <= 140; z += 1.7) {
       for (double x = -140; x <= 140; x += 1.7) {
         const double away_m = std::hypot(x, z);
-        const WaterPoint water = water_at(world, position_in(world, {1000 + x, 1000 + z}));
+        const WaterPoint water = water_at(world, world.position({1000 + x, 1000 + z}));
         if (away_m < 97) {
           ASSERT_EQ(water.body, kTheLake) << x << ' ' << z;
           ASSERT_EQ(water.surface_m, level_m);
@@ -101,7 +100,7 @@ TEST(Lake, AnOutlineWithBaysHasTheRightSideEverywhere) {
   for (double z = 760; z <= 1330; z += 3.1) {
     for (double x = 770; x <= 1230; x += 3.1) {
       if (away_m({x, z}) < 7) continue;
-      const auto water = water_surface(world, position_in(world, {x, z}));
+      const auto water = water_surface(world, world.position({x, z}));
       ASSERT_EQ(water && water->body == kTheLake, inside({x, z})) << x << ' ' << z;
       ++(water ? wet : dry);
     }
@@ -120,7 +119,7 @@ TEST(Lake, ChangesNoGroundBeyondItsShore) {
 
 TEST(Lake, TheSeaOwnsItsPlaceWhereItIsHigher) {
   World world = round_lake();
-  const core::WorldPosition at = position_in(world, {1000, 1000});
+  const core::WorldPosition at = world.position({1000, 1000});
   world.water.level_m = water_at(world, at).surface_m + 1;  // a sea that rises later
   EXPECT_EQ(water_at(world, at).body, kSea);
 }

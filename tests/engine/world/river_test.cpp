@@ -28,7 +28,6 @@ using testing::kTheBrook;
 using testing::kTheLake;
 using testing::kTheRiver;
 using testing::parsed;
-using testing::position_in;
 using testing::registry;
 using testing::replaced;
 using testing::river_text;
@@ -66,8 +65,7 @@ TEST(River, NeverRisesDownstreamAndLiesAboveItsBed) {
     std::vector<std::pair<double, WaterPoint>> samples;
     for (int i = 0; i < 50'000; ++i) {
       const double share = random.next_unit();
-      samples.emplace_back(share,
-                           water_at(world, position_in(world, middle_of(curve, share).at_m)));
+      samples.emplace_back(share, water_at(world, world.position(middle_of(curve, share).at_m)));
     }
     std::ranges::sort(samples, {}, &std::pair<double, WaterPoint>::first);
     int rises = 0, dry = 0;
@@ -113,25 +111,24 @@ TEST(River, LeadsFromItsSpringThroughTheLakeIntoTheSea) {
   const auto curve = river_curve(world, world.shaped.rivers[0]);
   std::vector<WaterBody> bodies;
   for (int i = 0; i <= 2000; ++i) {
-    const WaterPoint water = water_at(world, position_in(world, middle_of(curve, i / 2000.0).at_m));
+    const WaterPoint water = water_at(world, world.position(middle_of(curve, i / 2000.0).at_m));
     if (bodies.empty() || bodies.back() != water.body) bodies.push_back(water.body);
   }
   EXPECT_THAT(bodies, ElementsAre(kTheRiver, kTheLake, kTheRiver));
-  const WaterPoint mouth = water_at(world, position_in(world, curve.back().at_m));
+  const WaterPoint mouth = water_at(world, world.position(curve.back().at_m));
   EXPECT_EQ(mouth.surface_m, world.water.level_m);
-  const WaterPoint beyond =
-      water_at(world, position_in(world, curve.back().at_m - glm::dvec2(20, 0)));
+  const WaterPoint beyond = water_at(world, world.position(curve.back().at_m - glm::dvec2(20, 0)));
   EXPECT_EQ(beyond.body, kSea);
 }
 
 TEST(River, TheBrookJoinsTheRiverAtItsSurface) {
   const World& world = river_world();
   const auto brook = river_curve(world, world.shaped.rivers[1]);
-  const WaterPoint join = water_at(world, position_in(world, brook.back().at_m));
+  const WaterPoint join = water_at(world, world.position(brook.back().at_m));
   EXPECT_EQ(join.body, kTheRiver);
   double last_m = 0;
   for (const CurvePoint& point : brook) {
-    const WaterPoint water = water_at(world, position_in(world, point.at_m));
+    const WaterPoint water = water_at(world, world.position(point.at_m));
     if (water.body == kTheBrook) last_m = water.surface_m;
   }
   EXPECT_NEAR(last_m, join.surface_m, 0.1);
@@ -139,7 +136,7 @@ TEST(River, TheBrookJoinsTheRiverAtItsSurface) {
   const World other = parsed(std::string(kBrookLand) + kLakeTable + kBrookTable + kRiverTable);
   EXPECT_THAT(other.shaped.warnings, IsEmpty());
   for (int i = 0; i < 400; ++i) {
-    const auto at = position_in(world, middle_of(brook, i / 400.0).at_m);
+    const auto at = world.position(middle_of(brook, i / 400.0).at_m);
     EXPECT_EQ(water_at(world, at).surface_m, water_at(other, at).surface_m);
     EXPECT_EQ(water_at(world, at).depth_m, water_at(other, at).depth_m);
   }
@@ -153,14 +150,14 @@ TEST(River, FlowsDownstreamWithItsDischarge) {
   for (double share = 0.05; share < 0.75; share += 0.01) {
     const Middle middle = middle_of(curve, share);
     const glm::dvec2 side{-middle.direction.y, middle.direction.x};
-    const auto here = water_surface(world, position_in(world, middle.at_m));
+    const auto here = water_surface(world, world.position(middle.at_m));
     ASSERT_TRUE(here);
     const glm::dvec2 flow(here->flow_m_s);
     ASSERT_GT(glm::dot(flow, middle.direction), 0.95 * glm::length(flow));
     double discharge = 0;
     constexpr double kStepM = 0.05;
     for (double across = -8; across <= 8; across += kStepM) {
-      const WaterPoint water = water_at(world, position_in(world, middle.at_m + side * across));
+      const WaterPoint water = water_at(world, world.position(middle.at_m + side * across));
       discharge += glm::length(glm::dvec2(water.flow_m_s)) * water.depth_m * kStepM;
     }
     EXPECT_NEAR(discharge, 3, 0.9) << share;  // the bed has cells of a metre
@@ -176,7 +173,7 @@ TEST(River, FoamsWhereItFallsAndItsNormalLeansDownstream) {
   double steepest = 0;
   for (int i = 0; i < 1000; ++i) {
     const Middle middle = middle_of(curve, i / 1000.0);
-    const auto water = water_surface(world, position_in(world, middle.at_m));
+    const auto water = water_surface(world, world.position(middle.at_m));
     ASSERT_TRUE(water);
     most = std::max(most, water->foam), least = std::min(least, water->foam);
     ASSERT_NEAR(glm::length(water->normal), 1, 1e-6);
@@ -259,7 +256,7 @@ TEST(River, HoldsItsWater) {
   for (int i = 0; i < kSide * kSide; ++i) {
     const glm::dvec2 at_m{1630 + i % kSide, 1580 + i / kSide};
     ground_m.push_back(ground_in(world, at_m));
-    water.push_back(water_surface(world, position_in(world, at_m)));
+    water.push_back(water_surface(world, world.position(at_m)));
     if (water.back() && water.back()->body == kSea && ground_m.back() >= world.water.level_m)
       water.back().reset();
   }
@@ -320,13 +317,13 @@ TEST(River, TellsItsDischarge) {
   const World& world = river_world();
   const auto curve = river_curve(world, world.shaped.rivers[0]);
   const auto discharge_at = [&](const World& of, glm::dvec2 at_m) {
-    return river_discharge_m3_s(of, position_in(of, at_m));
+    return river_discharge_m3_s(of, of.position(at_m));
   };
   int rivers = 0, lakes = 0;
   for (int i = 0; i <= 500; ++i) {
     const glm::dvec2 at_m = middle_of(curve, i / 500.0).at_m;
     const auto found = discharge_at(world, at_m);
-    const WaterBody body = water_at(world, position_in(world, at_m)).body;
+    const WaterBody body = water_at(world, world.position(at_m)).body;
     ASSERT_EQ(found.has_value(), body == kTheRiver) << i;
     ++(found ? rivers : lakes);
     // The mean speed through two thirds of width times depth, below the fastest.

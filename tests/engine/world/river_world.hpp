@@ -67,11 +67,8 @@ inline const World& river_world() {
 // Names of its bodies.
 inline constexpr WaterBody kTheLake = kSea + 1, kTheRiver = kSea + 2, kTheBrook = kSea + 3;
 
-inline core::WorldPosition position_in(const World& world, glm::dvec2 at_m) {
-  return core::normalised({{0, 0}, {at_m.x, 0, at_m.y}}, world.block_size_m());
-}
 inline double ground_in(const World& world, glm::dvec2 at_m) {
-  const core::WorldPosition at = position_in(world, at_m);
+  const core::WorldPosition at = world.position(at_m);
   return models::ground_height_m(world.terrain, at.block, at.local.x, at.local.z);
 }
 

@@ -58,7 +58,7 @@ TEST(RoadCrossings, ARoadThroughANetworkCrossesItsRivers) {
     double x_m = 0, z_m = 0;
     const auto at = sentence.find(" at ");
     if (std::sscanf(sentence.c_str() + at, " at %lf, %lf m,", &x_m, &z_m) != 2) continue;
-    const core::WorldPosition place = position_in(world, {x_m, z_m});
+    const core::WorldPosition place = world.position({x_m, z_m});
     const bool is_river = sentence.find("a river of the network") != std::string::npos;
     EXPECT_EQ(river_discharge_m3_s(world, place).has_value(), is_river) << sentence;
     EXPECT_TRUE(water_surface(world, place)) << sentence;

@@ -28,7 +28,6 @@ using testing::kShapes;
 using testing::kSmallWorld;
 using testing::mesh_of;
 using testing::parsed;
-using testing::position_in;
 using testing::replaced;
 using testing::shaped_world;
 
@@ -206,7 +205,7 @@ TEST(StampMask, WaterThatIsOffLeavesTheWorldAsWithoutIt) {
   for (double z = 1600; z < 1780; z += 3) {
     for (double x = 1640; x < 1900; x += 3) {
       ASSERT_EQ(ground_in(world, {x, z}), ground_in(without, {x, z}));
-      const auto at = position_in(world, {x, z});
+      const auto at = world.position({x, z});
       const WaterPoint here = water_at(world, at), there = water_at(without, at);
       ASSERT_EQ(here.surface_m, there.surface_m);
       ASSERT_EQ(here.depth_m, there.depth_m);

@@ -11,7 +11,6 @@ namespace {
 
 using testing::kBrookLand;
 using testing::parsed;
-using testing::position_in;
 using testing::registry;
 using testing::river_text;
 

@@ -39,6 +39,15 @@ TEST(World, AnEndlessWorldHasEveryBlock) {
   EXPECT_FALSE(strip.contains({0, 4}));
 }
 
+TEST(World, MetresAreTheInverseOfAPosition) {
+  const World world = parsed(replaced(kSmallWorld, "[8, 4]", "[0, 0]"));
+  for (const glm::dvec2 at_m : {glm::dvec2(0, 0), glm::dvec2(70.5, 3), glm::dvec2(-0.25, 1e6)}) {
+    EXPECT_EQ(world.metres(world.position(at_m)), at_m);
+    const core::WorldPosition raw{{1, -2}, {at_m.x, 9, at_m.y}};
+    EXPECT_EQ(world.metres(raw), at_m + glm::dvec2(64, -128));
+  }
+}
+
 TEST(Sky, TheSunHasItsAzimuthAndElevation) {
   Sky sky;
   sky.sun_azimuth_deg = 90;

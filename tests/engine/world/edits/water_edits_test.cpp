@@ -18,7 +18,6 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using testing::kBrookLand;
 using testing::parsed;
-using testing::position_in;
 using testing::registry;
 using testing::river_world;
 
@@ -39,7 +38,7 @@ class WaterByHand : public ::testing::Test {
   World world_ = parsed(kBrookLand);
   Edits edits_;
   void apply() { set_edits(world_, edits_.layer()); }
-  WaterPoint water(glm::dvec2 at_m) const { return water_at(world_, position_in(world_, at_m)); }
+  WaterPoint water(glm::dvec2 at_m) const { return water_at(world_, world_.position(at_m)); }
 };
 
 TEST_F(WaterByHand, ARiverIsThatOfAFile) {
@@ -53,7 +52,7 @@ TEST_F(WaterByHand, ARiverIsThatOfAFile) {
   for (double z = 1240; z < 1660; z += 3.7) {
     for (double x = 1650; x < 1960; x += 3.3) {
       EXPECT_EQ(ground_in(world_, {x, z}), ground_in(of_file, {x, z}));
-      const WaterPoint a = water({x, z}), b = water_at(of_file, position_in(of_file, {x, z}));
+      const WaterPoint a = water({x, z}), b = water_at(of_file, of_file.position({x, z}));
       ASSERT_EQ(a.depth_m, b.depth_m);
       ASSERT_EQ(a.flow_m_s, b.flow_m_s);
       if (a.body >= kFirstAdded) {
@@ -86,7 +85,7 @@ TEST_F(WaterByHand, ARiverFlowsThroughALakeThatWasAddedBefore) {
 
 TEST_F(WaterByHand, ALakeDamsARiverOfTheFile) {
   world_ = river_world();
-  const core::WorldPosition above = position_in(world_, {1789, 1411});
+  const core::WorldPosition above = world_.position({1789, 1411});
   const WaterPoint before = water_at(world_, above);
   Lake dam = pond();
   dam.centre_m = {1765, 1427};
@@ -107,10 +106,10 @@ TEST_F(WaterByHand, LaterEditsOfTheGroundMoveNoWater) {
   apply();
   const WaterPoint before = water({1789, 1411});
   ASSERT_FALSE(before.is_dry());
-  ASSERT_TRUE(edits_.raise(world_, position_in(world_, {1789, 1411}), 12, 8));
+  ASSERT_TRUE(edits_.raise(world_, world_.position({1789, 1411}), 12, 8));
   apply();
   EXPECT_TRUE(water({1789, 1411}).is_dry()) << "a dam is dry";
-  EXPECT_EQ(water_surface(world_, position_in(world_, {1789, 1411}))->surface_m, before.surface_m);
+  EXPECT_EQ(water_surface(world_, world_.position({1789, 1411}))->surface_m, before.surface_m);
 }
 
 TEST_F(WaterByHand, BytesOfTheBlocksInAnyOrderGiveTheSameWater) {
@@ -134,7 +133,7 @@ TEST_F(WaterByHand, BytesOfTheBlocksInAnyOrderGiveTheSameWater) {
             edits_.layer()->ground.edits.hash_of(all, 0, 64));
   for (double z = 1240; z < 1660; z += 11) {
     for (double x = 1650; x < 1960; x += 7) {
-      const WaterPoint a = water({x, z}), b = water_at(other, position_in(other, {x, z}));
+      const WaterPoint a = water({x, z}), b = water_at(other, other.position({x, z}));
       ASSERT_EQ(a.surface_m, b.surface_m);
       ASSERT_EQ(a.depth_m, b.depth_m);
       ASSERT_EQ(a.body, b.body);
@@ -175,7 +174,7 @@ TEST_F(WaterByHand, KeepTheirPlacesInBlocksOfAnotherSize) {
       testing::replaced(testing::replaced(kBrookLand, "block_vertices = 65", "block_vertices = 33"),
                         "[48, 48]", "[96, 96]"));
   set_edits(other, fitted(edits_, other, registry()).layer());
-  const WaterPoint after = water_at(other, position_in(other, {1789, 1411}));
+  const WaterPoint after = water_at(other, other.position({1789, 1411}));
   EXPECT_EQ(after.surface_m, before.surface_m);
   EXPECT_EQ(after.body, before.body);
 }
@@ -219,7 +218,7 @@ TEST_F(WaterByHand, WrongWaterIsRejectedInOneSentenceAndChangesNothing) {
   EXPECT_THAT(refusal_of_lake([&](Lake& l) { l.shore_m = kNoNumber; }), HasSubstr("shore_m: nan"));
   models::GroundEdit raw;
   raw.change = models::GroundChange::kRiver;
-  raw.centre = position_in(world_, {1000, 1000});
+  raw.centre = world_.position({1000, 1000});
   EXPECT_THAT(edits_.edit_ground(world_, raw).error().message, HasSubstr("add_river()"));
 }
 
