@@ -119,8 +119,7 @@ core::Result<world::World> Session::read_world(std::optional<std::string_view> t
   auto world = text ? world::parse_world(*text, options_.world_file.string(), registry, files)
                     : world::load_world(options_.world_file, registry, files);
   if (!world) return world;
-  for (const std::string& warning : world->shaped.warnings)
-    core::log_warning(fmt::format("{}: {}", options_.world_file.string(), warning));
+  world::log_warnings(*world, options_.world_file.string());
   if (auto ok = set_hour(options_, *world); !ok) return tl::unexpected(ok.error());
   return world;
 }

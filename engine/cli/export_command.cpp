@@ -249,8 +249,9 @@ int ExportCommand::run() {
   models::Registry registry = models::make_standard_registry();
   std::optional<world::World> world;
   if (block_ || region_ || command_->count("--world") > 0) {
-    auto loaded = load_world(world_, registry, true);
+    auto loaded = load_world(world_, registry);
     if (!loaded) return fail_with(loaded.error());
+    world::log_warnings(*loaded, world_);
     world = std::move(*loaded);
   }
   if (region_) return export_region(*world, registry);

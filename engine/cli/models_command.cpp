@@ -7,6 +7,7 @@
 #include "engine/cli/commands.hpp"
 #include "engine/cli/shipped_files.hpp"
 #include "engine/models/registry.hpp"
+#include "engine/world/files/world_file.hpp"
 
 namespace psygen::cli {
 namespace {
@@ -76,8 +77,9 @@ class ModelsCommand final : public Command {
   int run() override {
     models::Registry registry = models::make_standard_registry();
     if (!world_.empty()) {
-      if (const auto world = load_world(world_, registry, true); !world)
-        return fail_with(world.error());
+      const auto world = load_world(world_, registry);
+      if (!world) return fail_with(world.error());
+      world::log_warnings(*world, world_);
     }
     return print(json_ ? json_of(registry) : table_of(registry));
   }

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "engine/core/data_file.hpp"
-#include "engine/core/log.hpp"
 #include "engine/core/nearest_word.hpp"
 #include "engine/handmade/files.hpp"
 #include "engine/world/files/world_file.hpp"
@@ -86,16 +85,10 @@ core::Result<fs::path> find_file(Shipped kind, const std::string& name) {
   return core::fail(core::ErrorCode::kIo, missing(kind, name, folders));
 }
 
-core::Result<world::World> load_world(const std::string& name, models::Registry& registry,
-                                      bool warns) {
+core::Result<world::World> load_world(const std::string& name, models::Registry& registry) {
   const auto file = find_file(Shipped::kWorld, name);
   if (!file) return tl::unexpected(file.error());
-  auto world = world::load_world(*file, registry, &handmade::files());
-  if (world && warns) {
-    for (const std::string& warning : world->shaped.warnings)
-      core::log_warning(fmt::format("{}: {}", file->string(), warning));
-  }
-  return world;
+  return world::load_world(*file, registry, &handmade::files());
 }
 
 core::Result<world::World> load_world_and_files(const std::string& name,

@@ -12,6 +12,7 @@
 #include <span>
 
 #include "engine/core/hash.hpp"
+#include "engine/core/log.hpp"
 #include "engine/core/rounding.hpp"
 #include "engine/core/utf8.hpp"
 #include "engine/world/files/document.hpp"
@@ -215,6 +216,11 @@ core::Result<World> load_world(const std::filesystem::path& file, const models::
   const core::Result<std::string> text = read_text_file(file);
   if (!text) return tl::unexpected(text.error());
   return parse_world(*text, file.string(), registry, beside);
+}
+
+void log_warnings(const World& world, std::string_view file_name) {
+  for (const std::string& warning : world.shaped.warnings)
+    core::log_warning(fmt::format("{}: {}", file_name, warning));
 }
 
 std::string write_world(const World& world, const models::Registry& registry) {

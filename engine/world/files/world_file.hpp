@@ -33,6 +33,9 @@ core::Result<World> parse_world(std::string_view text, std::string_view file_nam
                                 const models::Registry& registry,
                                 const ResourceLoader* beside = nullptr);
 
+// Logs the warnings about a world's rivers, lakes and roads, each after the name of its file.
+void log_warnings(const World& world, std::string_view file_name);
+
 // The text of a world file that parse_world() reads back as an equal world.
 std::string write_world(const World& world, const models::Registry& registry);
 // A hash of that text and of World::files_hash.
