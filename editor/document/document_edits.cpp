@@ -231,8 +231,7 @@ core::Result<void> Document::randomise(const world::TextPath& path, std::mt19937
   std::string text = *text_;
   for (const world::WorldField* field : fields_below(path, sections())) {
     const bool names_others = field->required && field->kind == world::FieldKind::kChoice;
-    const bool is_switch = field->path.back() == "enabled";
-    if (names_others || is_switch || locks_.is_locked(field->path)) continue;
+    if (names_others || field->is_switch || locks_.is_locked(field->path)) continue;
     for (int i = 0; i < kTries; ++i) {
       const auto value = random_value(*field, random);
       if (!value) break;

@@ -281,7 +281,8 @@ class SchemaBuilder {
   template <class Shape>
   void add_switch(WorldSection& to, const Shape& shape) const {
     add(to, "enabled", value_of(shape.enabled), "true",
-        without_limits("false: the world is as without it"));
+        without_limits("false: the world is as without it"))
+        .is_switch = true;
   }
   template <class Shape>
   void add_layer(WorldSection& to, const Shape& shape) const {

@@ -50,6 +50,7 @@ struct WorldField {
   bool logarithmic = false;          // the soft range is positive and spans two decades or more
   std::vector<std::string> choices;  // for kChoice
   bool required = false;             // has no default and cannot be removed
+  bool is_switch = false;            // false: the world is as without the field's table
   bool is_set = false;               // the text has it
   // The present value, in three forms: as TOML (from the text, else the default); as numbers (one,
   // two for ranges and pairs, three for colours); and, for texts, choices and seeds, without
