@@ -329,9 +329,7 @@ void World::cast_water(const Course& course, Hit& hit) {
           }
           if (course.lowest(from, to) > derived_.relief_m) return course.direction.y < 0;
           const BlockCoord block = moved(course.origin.block, x, z);
-          if (!world_->contains(block) ||
-              (layer->ground.network == nullptr &&
-               layer->ground.water_in(models::QuadCoord::of(block), derived_.block_m).empty()))
+          if (!world_->contains(block) || !layer->ground.may_have_water(block, 0, derived_.block_m))
             return true;
           const double end = std::min(to, hit.distance_m);
           std::optional<double> before = above_m(from);

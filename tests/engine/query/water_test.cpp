@@ -5,6 +5,7 @@
 
 #include "engine/query/path_finder.hpp"
 #include "tests/engine/query/worlds.hpp"
+#include "tests/engine/world/network_world.hpp"
 #include "tests/engine/world/river_world.hpp"
 
 namespace psygen::query {
@@ -164,6 +165,45 @@ TEST_F(WaterQuery, TellsTheDischargeOfRiversAlone) {
   EXPECT_GT(still, 100U);
   EXPECT_GT(dry, 100U);
   EXPECT_FALSE(query_.river_discharge_m3_s(at({-40, 0}, 0))) << "outside the world";
+}
+
+// Places in the water of rivers, and rays that come down to them from 400 m away.
+TEST(WaterQueryOfANetwork, ARayOverDryBlocksFindsTheRiverBeyond) {
+  const Loaded loaded = Loaded::parsed(world::testing::network_text());
+  const world::World& world = loaded.world;
+  World query(world, loaded.registry);
+  const double block_m = world.block_size_m();
+  constexpr double kAwayM = 400, kUpM = 30;
+  int rays = 0, over_dry_blocks = 0;
+  for (int i = 0; i < 40'000 && rays < 200; ++i) {
+    const core::WorldPosition river = world.position({7.0 * (i % 200), 7.0 * (i / 200)});
+    const auto discharge = query.river_discharge_m3_s(river);
+    if (!discharge || !discharge->has_value()) continue;
+    const double angle = 0.7 * ++rays;
+    const glm::dvec3 from{kAwayM * std::cos(angle), query.water(river)->surface_m + kUpM,
+                          kAwayM * std::sin(angle)};
+    Ray ray{.origin = core::normalised({river.block, river.local + from}, block_m),
+            .direction = {-from.x, -kUpM, -from.z},
+            .longest_m = 2 * kAwayM,
+            .ground = false,
+            .models = false,
+            .water = true};
+    const double to_river_m = std::hypot(kAwayM, kUpM);
+    const auto hit = query.cast(ray);
+    ASSERT_TRUE(hit);
+    ASSERT_EQ(hit->kind, HitKind::kWater) << rays;
+    ASSERT_LE(hit->distance_m, to_river_m + 1e-3) << rays;
+    if (hit->distance_m < to_river_m - 1) continue;  // water of another place is nearer
+    int dry = 0;
+    for (double t = 0; t < kAwayM; t += block_m) {
+      const glm::dvec3 at = ray.origin.local + t / kAwayM * ray.direction;
+      const core::BlockCoord block = core::normalised({ray.origin.block, at}, block_m).block;
+      dry += world.layer()->ground.may_have_water(block, 0, block_m) ? 0 : 1;
+    }
+    over_dry_blocks += dry >= 3 ? 1 : 0;
+  }
+  EXPECT_EQ(rays, 200);
+  EXPECT_GT(over_dry_blocks, 20);
 }
 
 }  // namespace
