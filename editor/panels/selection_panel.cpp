@@ -25,8 +25,7 @@ QString parameters_text(const models::ModelType& type, const models::Parameters&
 }
 
 QString water_lines(const Selection& selection, const scene::Scene& scene) {
-  query::World queries(scene.world(), scene.registry());
-  const auto water = water_facts(queries, selection.at);
+  const auto water = water_facts(scene.world(), selection.at);
   return water ? water_text(*water) + "\n\n" : QString();
 }
 

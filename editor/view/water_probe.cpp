@@ -8,6 +8,7 @@
 #include "engine/core/headroom.hpp"
 #include "engine/models/registry.hpp"
 #include "engine/scene/scene.hpp"
+#include "engine/world/water.hpp"
 
 namespace psygen::editor {
 namespace {
@@ -17,18 +18,19 @@ constexpr std::size_t kProbeBytes = std::size_t{16} << 20;
 
 }  // namespace
 
-std::optional<WaterFacts> water_facts(query::World& queries, const core::WorldPosition& at) {
-  const auto water = queries.water(at);
-  if (!water || water->is_dry()) return std::nullopt;
+std::optional<WaterFacts> water_facts(const world::World& world, const core::WorldPosition& at) {
+  const core::WorldPosition place = core::normalised(at, world.block_size_m());
+  if (!world.contains(place.block)) return std::nullopt;
+  const world::WaterPoint water = world::water_at(world, place);
+  if (water.is_dry()) return std::nullopt;
   WaterFacts facts;
-  facts.surface_m = water->surface_m;
-  facts.depth_m = water->depth_m;
-  facts.speed_m_s = std::hypot(double{water->flow_m_s.x}, double{water->flow_m_s.y});
-  if (water->body == world::kSea) return facts;
-  const auto discharge = queries.river_discharge_m3_s(at);
-  const bool is_river = discharge && discharge->has_value();
-  facts.kind = is_river ? WaterKind::kRiver : WaterKind::kLake;
-  facts.discharge_m3_s = is_river ? **discharge : 0;
+  facts.surface_m = water.surface_m;
+  facts.depth_m = water.depth_m;
+  facts.speed_m_s = std::hypot(double{water.flow_m_s.x}, double{water.flow_m_s.y});
+  if (water.body == world::kSea) return facts;
+  const auto discharge_m3_s = world::river_discharge_m3_s(world, place);
+  facts.kind = discharge_m3_s ? WaterKind::kRiver : WaterKind::kLake;
+  facts.discharge_m3_s = discharge_m3_s.value_or(0);
   return facts;
 }
 
@@ -83,7 +85,7 @@ void WaterProbe::ask(const scene::Scene& scene, const core::CameraPose& pose,
   const auto task = std::make_shared<Task>([ground = ground_, ray]() -> std::optional<WaterFacts> {
     const auto hit = ground->queries.cast(ray);
     if (!hit || hit->kind != query::HitKind::kWater) return std::nullopt;
-    return water_facts(ground->queries, hit->position);
+    return water_facts(ground->world, hit->position);
   });
   auto thread = core::start_thread([task] { (*task)(); });
   if (!thread) {

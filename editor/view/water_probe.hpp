@@ -27,8 +27,9 @@ struct WaterFacts {
   double discharge_m3_s = 0;  // of a river
 };
 
-// The water at a position, whose height is ignored; nullopt: dry, or outside the world.
-std::optional<WaterFacts> water_facts(query::World& queries, const core::WorldPosition& at);
+// The water at a position, whose height is ignored; nullopt: dry, or outside the world. Takes
+// microseconds, and 30 with a river network and erosion. Any thread.
+std::optional<WaterFacts> water_facts(const world::World& world, const core::WorldPosition& at);
 
 // One per view; it keeps a copy of the world's ground.
 class WaterProbe {

@@ -95,10 +95,11 @@ core::Result<world::WaterPoint> World::water(const core::WorldPosition& position
 
 core::Result<std::optional<double>> World::river_discharge_m3_s(
     const core::WorldPosition& position) {
-  const auto found = water(position);
-  if (!found) return tl::unexpected(found.error());
-  if (found->is_dry()) return std::nullopt;
-  return world::river_discharge_m3_s(*world_, position);
+  const auto at = on_ground(position);
+  if (!at) return tl::unexpected(at.error());
+  const auto discharge = world::river_discharge_m3_s(*world_, *at);
+  if (!discharge || water(*at)->is_dry()) return std::nullopt;  // the block's ground comes last
+  return discharge;
 }
 
 // A ray from a normalised origin, with a direction of unit length.

@@ -182,9 +182,8 @@ TEST(RiverOverlay, FollowsSwitchCameraAndWorld) {
 
 TEST(WaterFacts, TellBodyDepthSpeedAndDischarge) {
   const World& world = world::testing::river_world();
-  query::World queries(world, world::testing::registry());
   const auto at = [&](double x_m, double z_m) {
-    return water_facts(queries, world.position({x_m, z_m}));
+    return water_facts(world, world.position({x_m, z_m}));
   };
   const auto river = at(2020, 1735), lake = at(1750, 1670), sea = at(1545, 1655);
   ASSERT_TRUE(river && lake && sea);
