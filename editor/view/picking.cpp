@@ -109,29 +109,17 @@ std::optional<Selection> pick(const scene::Scene& scene, const core::CameraPose&
   return relocate_selection(selection, scene);
 }
 
-GroundRays::Ground::Ground(const scene::Scene& scene)
-    : shape(scene.world()),
-      world([&] {
-        world::World bare = scene.world();
-        bare.scatter.clear();
-        bare.places = {};
-        return bare;
-      }()),
-      queries(world, scene.registry()) {}
-
 std::optional<glm::dvec2> GroundRays::at(const scene::Scene& scene, const core::CameraPose& pose,
                                          const glm::dvec3& direction) {
-  const bool is_new = std::exchange(world_is_new_, false);
-  if (!ground_ || (is_new && !(ground_->shape == SurfaceShape(scene.world()))))
-    ground_ = std::make_unique<Ground>(scene);
+  BareGround& ground = *ground_.of(scene.world());
   query::Ray ray;
   ray.origin = pose.position;
   ray.direction = direction;
   ray.longest_m = kFarM;
   ray.models = ray.objects = false;
-  const auto hit = ground_->queries.cast(ray);
+  const auto hit = ground.queries.cast(ray);
   if (!hit || hit->kind != query::HitKind::kGround) return std::nullopt;
-  return ground_->world.metres(hit->position);
+  return ground.world.metres(hit->position);
 }
 
 std::optional<Selection> relocate_selection(const Selection& before, const scene::Scene& scene) {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <QPointF>
-#include <memory>
 #include <optional>
 
 #include "editor/view/surface_shape.hpp"
@@ -46,20 +45,10 @@ class GroundRays {
   std::optional<glm::dvec2> at(const scene::Scene& scene, const core::CameraPose& pose,
                                const glm::dvec3& direction);
   // To be called after a change of the world.
-  void note_world() { world_is_new_ = true; }
-  // To be called before the scene is destroyed.
-  void clear() { ground_.reset(); }
+  void note_world() { ground_.note_world(); }
 
  private:
-  // A world without models.
-  struct Ground {
-    explicit Ground(const scene::Scene& scene);
-    SurfaceShape shape;
-    world::World world;
-    query::World queries;
-  };
-  std::unique_ptr<Ground> ground_;
-  bool world_is_new_ = false;
+  KeptGround ground_;
 };
 
 // The same model, or the same point of the ground, in the present world; nullopt if it is gone.

@@ -14,6 +14,8 @@ SurfaceShape::SurfaceShape(const world::World& world)
     : terrain_(world.terrain),
       water_(world.water),
       block_m_(world.block_size_m()),
+      blocks_x_(world.blocks_x),
+      blocks_z_(world.blocks_z),
       shape_(world::shape_hash(world)),
       layer_(world.layer()),
       edits_(world.edits) {
@@ -35,6 +37,24 @@ bool SurfaceDifference::at(core::BlockCoord block) {
   if (!last_ || last_->first != block)
     last_ = {block, before_.shape_of(block) != after_.shape_of(block)};
   return last_->second;
+}
+
+BareGround::BareGround(const world::World& of)
+    : shape(of),
+      world([&] {
+        world::World bare = of;
+        bare.scatter.clear();
+        bare.places = {};
+        return bare;
+      }()),
+      registry(models::make_standard_registry()),
+      queries(world, registry) {}
+
+const std::shared_ptr<BareGround>& KeptGround::of(const world::World& world) {
+  const bool is_new = std::exchange(world_is_new_, false);
+  if (!ground_ || (is_new && !(ground_->shape == SurfaceShape(world))))
+    ground_ = std::make_shared<BareGround>(world);
+  return ground_;
 }
 
 }  // namespace psygen::editor

@@ -4,9 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "editor/view/surface_shape.hpp"
 #include "engine/core/headroom.hpp"
-#include "engine/models/registry.hpp"
 #include "engine/scene/scene.hpp"
 #include "engine/world/water.hpp"
 
@@ -14,7 +12,6 @@ namespace psygen::editor {
 namespace {
 
 constexpr double kProbeFarM = 4000;
-constexpr std::size_t kProbeBytes = std::size_t{16} << 20;
 
 }  // namespace
 
@@ -34,26 +31,6 @@ std::optional<WaterFacts> water_facts(const world::World& world, const core::Wor
   return facts;
 }
 
-// A copy of the ground and the water of a world, without its models and their registry, which the
-// scene may replace meanwhile.
-struct WaterProbe::Ground {
-  explicit Ground(const world::World& of)
-      : shape(of),
-        world([&] {
-          world::World bare = of;
-          bare.scatter.clear();
-          bare.places = {};
-          return bare;
-        }()),
-        registry(models::make_standard_registry()),
-        queries(world, registry, kProbeBytes) {}
-
-  SurfaceShape shape;
-  world::World world;
-  models::Registry registry;
-  query::World queries;
-};
-
 WaterProbe::~WaterProbe() {
   if (next_.valid()) next_.wait();
 }
@@ -63,16 +40,16 @@ void WaterProbe::ask(const scene::Scene& scene, const core::CameraPose& pose,
   answer();
   if (next_.valid()) return;
   if (!world::has_water(scene.world())) {
-    ground_ = nullptr;
+    asked_ground_ = nullptr;
     answer_ = std::nullopt;
     return;
   }
+  const std::shared_ptr<BareGround>& ground = ground_.of(scene.world());
   const core::WorldPosition& eye = pose.position;
-  const bool is_same = ground_ != nullptr && ground_->shape == SurfaceShape(scene.world());
-  if (is_same && asked_eye_.block == eye.block && asked_eye_.local == eye.local &&
+  if (asked_ground_ == ground && asked_eye_.block == eye.block && asked_eye_.local == eye.local &&
       asked_direction_ == direction)
     return;
-  if (!is_same) ground_ = std::make_shared<Ground>(scene.world());
+  asked_ground_ = ground;
   asked_eye_ = eye;
   asked_direction_ = direction;
   query::Ray ray;
@@ -82,14 +59,14 @@ void WaterProbe::ask(const scene::Scene& scene, const core::CameraPose& pose,
   ray.models = ray.objects = false;
   ray.water = true;
   using Task = std::packaged_task<std::optional<WaterFacts>()>;
-  const auto task = std::make_shared<Task>([ground = ground_, ray]() -> std::optional<WaterFacts> {
+  const auto task = std::make_shared<Task>([ground, ray]() -> std::optional<WaterFacts> {
     const auto hit = ground->queries.cast(ray);
     if (!hit || hit->kind != query::HitKind::kWater) return std::nullopt;
     return water_facts(ground->world, hit->position);
   });
   auto thread = core::start_thread([task] { (*task)(); });
   if (!thread) {
-    ground_ = nullptr;  // asks again
+    asked_ground_ = nullptr;  // asks again
     return;
   }
   next_ = task->get_future();

@@ -7,8 +7,8 @@
 #include <memory>
 #include <optional>
 
+#include "editor/view/surface_shape.hpp"
 #include "engine/core/camera.hpp"
-#include "engine/query/world.hpp"
 
 namespace psygen::scene {
 class Scene;
@@ -44,15 +44,17 @@ class WaterProbe {
   void ask(const scene::Scene& scene, const core::CameraPose& pose, const glm::dvec3& direction);
   // The newest answer; nullopt: no water. Takes microseconds.
   const std::optional<WaterFacts>& answer();
+  // To be called after a change of the world.
+  void note_world() { ground_.note_world(); }
   // True while another thread works.
   bool is_busy() const { return next_.valid(); }
 
  private:
-  struct Ground;
-
-  std::shared_ptr<Ground> ground_;  // used by the other thread alone while next_ is valid
+  KeptGround ground_;  // used by the other thread alone while next_ is valid
   std::future<std::optional<WaterFacts>> next_;
-  core::WorldPosition asked_eye_;  // of the last question
+  // Of the last question:
+  std::shared_ptr<const BareGround> asked_ground_;
+  core::WorldPosition asked_eye_;
   glm::dvec3 asked_direction_{0.0};
   std::optional<WaterFacts> answer_;
 };

@@ -85,7 +85,6 @@ void WorldView::close() {
     prepared_.wait();  // the preparation uses the session
   }
   prepared_ = {};
-  ground_.clear();
   has_hung_ = has_hung();
   if (session_ && session_->has_hung_modelers()) (void)session_.release();
   session_.reset();
@@ -220,6 +219,7 @@ void WorldView::apply_camera_placement() {
   grid_.note_world();
   overlay_.note_world();
   ground_.note_world();
+  probe_.note_world();
   const scene::Scene& scene = session_->scene();
   camera_.set_block_size(scene.world().block_size_m());
   const PlaceCamera place_camera = std::exchange(place_camera_, nullptr);

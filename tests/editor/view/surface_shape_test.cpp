@@ -39,6 +39,32 @@ TEST(SurfaceShape, DependsOnlyOnGroundAndWater) {
   EXPECT_FALSE(shape == SurfaceShape(world_of(std::string(kWorld) + "[water]\nlevel_m = 3\n")));
 }
 
+TEST(SurfaceShape, DependsOnTheBordersOfTheWorld) {
+  const SurfaceShape shape(world_of(kWorld));
+  for (const char* blocks : {"blocks = [9, 4]", "blocks = [8, 5]", "blocks = [0, 0]"}) {
+    const SurfaceShape other(world_of(replaced(kWorld, "blocks = [8, 4]", blocks)));
+    EXPECT_FALSE(shape == other) << blocks;
+    EXPECT_TRUE(shape.has_base_of(other)) << blocks;
+    EXPECT_FALSE(SurfaceDifference(shape, other).at({0, 0})) << "its heights are the same";
+  }
+}
+
+TEST(KeptGround, FollowsTheSurfaceOfTheWorldOnceItIsToldOfAChange) {
+  const world::World world = world_of(kWorld);
+  const world::World smaller = world_of(replaced(kWorld, "blocks = [8, 4]", "blocks = [2, 2]"));
+  KeptGround kept;
+  const std::shared_ptr<BareGround> first = kept.of(world);
+  EXPECT_TRUE(first->world.scatter.empty());
+  EXPECT_EQ(kept.of(smaller), first) << "not told yet";
+  kept.note_world();
+  EXPECT_EQ(kept.of(world_of(replaced(kWorld, "count = 3", "count = 30"))), first);
+  const core::WorldPosition place{{5, 3}, {1, 0, 1}};
+  EXPECT_TRUE(kept.of(world)->queries.ground(place));
+  kept.note_world();
+  EXPECT_NE(kept.of(smaller), first);
+  EXPECT_FALSE(kept.of(smaller)->queries.ground(place)) << "outside the smaller world";
+}
+
 TEST(SurfaceShape, DiffersOnlyUnderARoad) {
   const SurfaceShape before(world_of(kWorld)), after(world_of(with_road(20)));
   SurfaceDifference difference(before, after);
