@@ -335,9 +335,8 @@ QWidget* make_cache_map_panel(WorldView& view) {
   layout->addWidget(map, 1);
   layout->addWidget(legend);
   const auto update_legend = [legend, colours, &view] {
-    const QString text = legend_text(static_cast<MapColour>(colours->currentIndex())) +
-                         (view.rivers().map() != nullptr ? rivers_text() : QString());
-    if (legend->text() != text) legend->setText(text);
+    legend->setText(legend_text(static_cast<MapColour>(colours->currentIndex())) +
+                    (view.rivers().map() != nullptr ? rivers_text() : QString()));
   };
   QObject::connect(colours, &QComboBox::activated, panel, [map, update_legend](int index) {
     map->set_colour(static_cast<MapColour>(index));
@@ -352,7 +351,7 @@ QWidget* make_cache_map_panel(WorldView& view) {
     const auto rivers = view.rivers().map();
     const glm::dvec3 away = rivers == nullptr
                                 ? glm::dvec3(0.0)
-                                : core::offset_m(rivers->anchor.block, scene.camera().pose.position,
+                                : core::offset_m(rivers->corner, scene.camera().pose.position,
                                                  scene.world().block_size_m());
     map->show_rivers(rivers, {away.x, away.z});
     update_legend();

@@ -50,7 +50,7 @@ class CacheMap final : public QWidget {
   // Shows given nodes, coarse ones first; yaw and field of view in radians.
   void show_cells(std::vector<Cell> cells, double yaw, double horizontal_fov);
   // Draws channels, shores and divides over the nodes; null: none. `from_camera_m`: x and z of the
-  // map's anchor from the camera.
+  // map's corner from the camera.
   void show_rivers(std::shared_ptr<const RiverMap> rivers, glm::dvec2 from_camera_m);
   void set_colour(MapColour colour);
   // Half the smaller side of the map.

@@ -19,8 +19,7 @@ constexpr int kSquares = 4;
 constexpr double kSideSpacings = 64;          // of the finest square, in spacings of its nodes
 constexpr std::int64_t kShoreSteps = 128;     // samples along a side, for shores
 constexpr std::size_t kFarChords = 2;         // chords of a curve that one far line stands for
-constexpr int kDivideSquare = kSquares - 1;   // the square whose nodes give the divides
-constexpr std::uint32_t kSmallestBasin = 16;  // of those nodes; smaller ones have no divide
+constexpr std::uint32_t kSmallestBasin = 16;  // coarsest nodes; smaller ones have no divide
 
 class Maker {
  public:
@@ -39,7 +38,7 @@ class Maker {
     side_ = std::max<std::int64_t>(std::llround(side_cells / kShoreSteps), 1) * kShoreSteps;
     middle_ = {snapped(corner_.x + std::llround(around.local.x / cell_m_)),
                snapped(corner_.z + std::llround(around.local.z / cell_m_))};
-    map_.anchor = {around.block, {0, 0, 0}};
+    map_.corner = around.block;
     map_.near_m = static_cast<double>(side_) / 2 * cell_m_;
   }
 
@@ -53,8 +52,7 @@ class Maker {
       add_channels(k > 0 ? kFarChords : 1);
       add_shores();
     }
-    if (!cancelled_)
-      add_divides(network_.settings().halvings - std::min(kDivideSquare, squares - 1), squares);
+    if (!cancelled_) add_divides(squares);
     return std::move(map_);
   }
 
@@ -86,8 +84,8 @@ class Maker {
     };
     return in(x_cells, s.x) && in(z_cells, s.z);
   }
-  // A place in cells of the world, as metres from the anchor.
-  glm::vec3 from_anchor(double x_cells, double height_m, double z_cells) const {
+  // A place in cells of the world, as metres from the corner.
+  glm::vec3 from_corner(double x_cells, double height_m, double z_cells) const {
     return {(x_cells - static_cast<double>(corner_.x)) * cell_m_, height_m,
             (z_cells - static_cast<double>(corner_.z)) * cell_m_};
   }
@@ -101,7 +99,7 @@ class Maker {
         if (holds(inner_, x, z) || !is_in_world(x, z)) continue;
         const auto end = [&](std::size_t s) {
           const float t = static_cast<float>(s) / Curve::kChords;
-          return from_anchor(x + double{curve.px[s]} / cell_m_,
+          return from_corner(x + double{curve.px[s]} / cell_m_,
                              double{models::network::level_m(curve, t)},
                              z + double{curve.pz[s]} / cell_m_);
         };
@@ -198,7 +196,7 @@ class Maker {
                    share * static_cast<double>(axis[to] - axis[from]);
           };
           ends[crossed++] =
-              from_anchor(between(s.x, i + kCorners[c][0], i + kCorners[d][0]), double{level_m},
+              from_corner(between(s.x, i + kCorners[c][0], i + kCorners[d][0]), double{level_m},
                           between(s.z, j + kCorners[c][1], j + kCorners[d][1]));
         }
         for (std::size_t e = 0; e + 1 < crossed; e += 2)
@@ -212,8 +210,9 @@ class Maker {
 
   // Divides pass between nodes that drain to different places: through the middles of the edges of
   // the lattice's triangles.
-  void add_divides(int level, int squares) {
+  void add_divides(int squares) {
     const RiverNetwork::Cells all = square(squares - 1);
+    const int level = network_.settings().halvings - (squares - 1);
     const auto nodes = network_.nodes(level, all.x, all.z, all.side);
     const models::network::Rect& rect = nodes.rect;
     const std::vector<std::size_t> mouths = mouths_of(nodes);
@@ -221,7 +220,7 @@ class Maker {
       return static_cast<std::size_t>((j - rect.j0) * rect.width() + i - rect.i0);
     };
     const auto place = [&](std::size_t k) {
-      return from_anchor(cells(nodes.nodes[k].x), 0, cells(nodes.nodes[k].z));
+      return from_corner(cells(nodes.nodes[k].x), 0, cells(nodes.nodes[k].z));
     };
     const auto add = [&](const std::array<std::size_t, 3>& corners) {
       std::array<glm::vec3, 3> middles{};
@@ -283,7 +282,7 @@ class Maker {
   std::int64_t block_cells_;
   glm::dvec2 blocks_;
   const std::atomic<bool>& cancelled_;
-  RiverNetwork::Cells corner_;  // of the anchor
+  RiverNetwork::Cells corner_;  // of the map
   std::int64_t side_ = 0;       // of the finest square, cells
   std::array<std::int64_t, 2> middle_{};
   // Of the present square:

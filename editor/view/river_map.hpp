@@ -15,7 +15,7 @@
 namespace psygen::editor {
 
 struct RiverMap {
-  // Ends are metres from the anchor, at the height of the water; of divides, the height is 0.
+  // Ends are metres from the corner, at the height of the water; of divides, the height is 0.
   struct Line {
     glm::vec3 from{0.0F}, to{0.0F};
   };
@@ -23,7 +23,7 @@ struct RiverMap {
     Line line;
     float discharge_m3_s = 0;
   };
-  core::WorldPosition anchor;     // a corner of a block, at height 0
+  core::BlockCoord corner;        // the block whose corner, at height 0, lines are relative to
   double near_m = 0;              // half the side of the finest square
   std::vector<Channel> channels;  // the finest ones first
   std::vector<Line> shores, divides;

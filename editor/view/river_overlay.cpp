@@ -45,8 +45,7 @@ void RiverOverlay::follow(const world::World& world, const core::WorldPosition& 
   }
   if (next_.valid()) return;
   if (map_ != nullptr && of_map_ == network->identity()) {
-    const glm::dvec3 away =
-        core::offset_m(map_->anchor.block, eye, world.block_size_m()) + map_->anchor.local;
+    const glm::dvec3 away = core::offset_m(map_->corner, eye, world.block_size_m());
     if (std::max(std::abs(away.x), std::abs(away.z)) < 0.5 * map_->near_m) return;
   }
   start(world, eye);
@@ -84,7 +83,7 @@ void RiverOverlay::add_lines(const core::WorldPosition& eye, double block_m, dou
                              std::vector<render::Line>& lines) const {
   if (map_ == nullptr) return;
   const std::size_t end = lines.size() + kMaxRiverLines;
-  const glm::vec3 from_eye(core::offset_m(map_->anchor.block, eye, block_m) + map_->anchor.local);
+  const glm::vec3 from_eye(core::offset_m(map_->corner, eye, block_m));
   const auto seen_m = static_cast<float>(kSeenSquares * map_->near_m);
   const auto lifted = [](glm::vec3 at) {
     const float away_m = glm::length(at);

@@ -30,8 +30,8 @@ RiverMap map_of(const World& world, glm::dvec2 at_m, glm::dvec2 blocks = glm::dv
   return make_river_map(*network_of(world), world.position(at_m), blocks, never);
 }
 
-core::WorldPosition place(const World& world, const RiverMap& map, const glm::vec3& from_anchor) {
-  return core::normalised({map.anchor.block, glm::dvec3(from_anchor)}, world.block_size_m());
+core::WorldPosition place(const World& world, const RiverMap& map, const glm::vec3& from_corner) {
+  return core::normalised({map.corner, glm::dvec3(from_corner)}, world.block_size_m());
 }
 
 TEST(RiverMap, ItsNearChannelsLieInTheRiversOfTheWorld) {
@@ -99,7 +99,7 @@ TEST(RiverMap, OfABoundedWorldEndsAtItsBorder) {
   const double block_m = world.block_size_m();
   for (const RiverMap::Channel& channel : map.channels) {
     const glm::dvec2 at_m = glm::dvec2(channel.line.from.x, channel.line.from.z) +
-                            glm::dvec2(map.anchor.block.x, map.anchor.block.z) * block_m;
+                            glm::dvec2(map.corner.x, map.corner.z) * block_m;
     EXPECT_GT(at_m.x, -200);
     EXPECT_LT(at_m.x, 40 * block_m + 200);
     EXPECT_GT(at_m.y, -200);
