@@ -72,8 +72,8 @@ QString rivers_text() {
     return swatch(QColor::fromRgbF(colour.x, colour.y, colour.z), words);
   };
   QString text = "<br>";
-  for (const double discharge : {0.01, 0.1, 1.0, 10.0})
-    text += line(river_style(discharge).colour, tr("%1&nbsp;m³/s").arg(discharge));
+  for (int px = 1; px <= kMaxRiverPx; ++px)
+    text += line(river_colour(px), tr("%1&nbsp;m³/s").arg(river_discharge_m3_s(px)));
   return text + line(kShoreColour, tr("shore")) + line(kDivideColour, tr("divide"));
 }
 
@@ -256,15 +256,10 @@ void CacheMap::paint_rivers(QPainter& painter) const {
   draw(divides, kDivideColour, 1, Qt::DotLine);
   draw(shores, kShoreColour, 1);
   std::array<std::vector<QLineF>, kMaxRiverPx + 1> channels;
-  std::array<glm::vec3, kMaxRiverPx + 1> colours;
-  for (const RiverMap::Channel& channel : rivers_->channels) {
-    const RiverStyle style = river_style(double{channel.discharge_m3_s});
-    const auto px = static_cast<std::size_t>(style.width_px);
-    add(channel.line, channels[px]);
-    colours[px] = style.colour;
-  }
-  for (std::size_t px = 1; px < channels.size(); ++px)
-    draw(channels[px], colours[px], 0.6 * static_cast<double>(px) + 0.2);
+  for (const RiverMap::Channel& channel : rivers_->channels)
+    add(channel.line, channels[static_cast<std::size_t>(channel.width_px)]);
+  for (int px = 1; px <= kMaxRiverPx; ++px)
+    draw(channels[static_cast<std::size_t>(px)], river_colour(px), 0.6 * px + 0.2);
   painter.restore();
 }
 

@@ -20,6 +20,7 @@ constexpr double kSideSpacings = 64;          // of the finest square, in spacin
 constexpr std::int64_t kShoreSteps = 128;     // samples along a side, for shores
 constexpr std::size_t kFarChords = 2;         // chords of a curve that one far line stands for
 constexpr std::uint32_t kSmallestBasin = 16;  // coarsest nodes; smaller ones have no divide
+constexpr int kBrookDecades = 2;              // a line of 1 pixel stands for 10^−2 m³/s
 
 class Maker {
  public:
@@ -103,9 +104,10 @@ class Maker {
                              double{models::network::level_m(curve, t)},
                              z + double{curve.pz[s]} / cell_m_);
         };
+        const int width_px = river_width_px(double{curve.discharge_m3_s});
         for (std::size_t s = 0; s < curve.chords; s += chords) {
           const std::size_t next = std::min<std::size_t>(s + chords, curve.chords);
-          map_.channels.push_back({{end(s), end(next)}, curve.discharge_m3_s});
+          map_.channels.push_back({{end(s), end(next)}, curve.discharge_m3_s, width_px});
         }
       }
     }
@@ -299,15 +301,19 @@ RiverMap make_river_map(const models::RiverNetwork& network, const core::WorldPo
   return Maker(network, around, blocks, cancelled).make();
 }
 
-RiverStyle river_style(double discharge_m3_s) {
-  // From a brook of 1 l/s to a river of 30 m³/s.
-  constexpr double kLeast = -3, kMost = 1.5;
-  const double power = std::log10(std::max(discharge_m3_s, 1e-6));
-  const double share = std::clamp((power - kLeast) / (kMost - kLeast), 0.0, 1.0);
+int river_width_px(double discharge_m3_s) {
+  const double decade = std::round(std::log10(std::max(discharge_m3_s, 1e-6)));
+  return std::clamp(static_cast<int>(decade) + kBrookDecades + 1, 1, kMaxRiverPx);
+}
+
+glm::vec3 river_colour(int width_px) {
   const glm::vec3 brook{0.55F, 0.85F, 1.0F}, stream{0.10F, 0.50F, 1.0F}, river{0.55F, 0.15F, 0.95F};
-  const auto part = static_cast<float>(2 * share);
-  return {1 + static_cast<int>(std::lround((kMaxRiverPx - 1) * share * share)),
-          part < 1 ? glm::mix(brook, stream, part) : glm::mix(stream, river, part - 1)};
+  const float part = 2 * static_cast<float>(width_px - 1) / (kMaxRiverPx - 1);
+  return part < 1 ? glm::mix(brook, stream, part) : glm::mix(stream, river, part - 1);
+}
+
+double river_discharge_m3_s(int width_px) {
+  return std::pow(10.0, width_px - 1 - kBrookDecades);
 }
 
 }  // namespace psygen::editor

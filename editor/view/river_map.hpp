@@ -22,6 +22,7 @@ struct RiverMap {
   struct Channel {
     Line line;
     float discharge_m3_s = 0;
+    int width_px = 1;  // river_width_px()
   };
   core::BlockCoord corner;        // the block whose corner, at height 0, lines are relative to
   double near_m = 0;              // half the side of the finest square
@@ -34,14 +35,14 @@ struct RiverMap {
 RiverMap make_river_map(const models::RiverNetwork& network, const core::WorldPosition& around,
                         glm::dvec2 blocks, const std::atomic<bool>& cancelled);
 
-// The look of a channel on a map: from pale and thin streams to wide rivers, by the logarithm of
-// the discharge.
-struct RiverStyle {
-  int width_px = 1;        // 1 … kMaxRiverPx
-  glm::vec3 colour{1.0F};  // as on screen
-};
+// The five looks of channels on maps, one for each decade of the discharge: from pale brooks of
+// about 10 l/s or less, 1 pixel wide, to rivers of about 100 m³/s or more.
 inline constexpr int kMaxRiverPx = 5;
-RiverStyle river_style(double discharge_m3_s);
+int river_width_px(double discharge_m3_s);
+// The colour, as on screen, of channels of a width from 1 to kMaxRiverPx.
+glm::vec3 river_colour(int width_px);
+// The discharge in m³/s that stands for a width.
+double river_discharge_m3_s(int width_px);
 inline constexpr glm::vec3 kShoreColour{0.62F, 0.95F, 1.0F}, kDivideColour{0.95F, 0.55F, 0.25F};
 
 }  // namespace psygen::editor

@@ -107,10 +107,8 @@ void RiverOverlay::add_lines(const core::WorldPosition& eye, double block_m, dou
   };
   for (const RiverMap::Line& shore : map_->shores)
     add(shore, kShoreColour, 1);
-  for (const RiverMap::Channel& channel : map_->channels) {
-    const RiverStyle style = river_style(double{channel.discharge_m3_s});
-    add(channel.line, style.colour, style.width_px);
-  }
+  for (const RiverMap::Channel& channel : map_->channels)
+    add(channel.line, river_colour(channel.width_px), channel.width_px);
 }
 
 }  // namespace psygen::editor

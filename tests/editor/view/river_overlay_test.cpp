@@ -47,6 +47,7 @@ TEST(RiverMap, ItsNearChannelsLieInTheRiversOfTheWorld) {
     const bool in_sea = double{middle.y} < world.water.level_m + 0.1;
     if (!water || (water->body == world::kSea && !in_sea)) continue;
     ++wet;
+    EXPECT_EQ(channel.width_px, river_width_px(double{channel.discharge_m3_s}));
     EXPECT_NEAR(water->surface_m, double{middle.y}, 2);
     const auto discharge = world::river_discharge_m3_s(world, at);
     if (discharge && std::abs(*discharge - double{channel.discharge_m3_s}) < 1e-6) ++equal;
@@ -113,17 +114,28 @@ TEST(RiverMap, ACancelledOneIsEmpty) {
   EXPECT_TRUE(map.channels.empty() && map.shores.empty() && map.divides.empty());
 }
 
-TEST(RiverStyle, WiderLinesAreLargerRivers) {
-  EXPECT_EQ(river_style(0).width_px, 1);
-  EXPECT_EQ(river_style(0.001).width_px, 1);
-  EXPECT_EQ(river_style(1000).width_px, kMaxRiverPx);
+TEST(RiverLook, WiderLinesAreLargerRivers) {
+  EXPECT_EQ(river_width_px(0), 1);
+  EXPECT_EQ(river_width_px(0.001), 1);
+  EXPECT_EQ(river_width_px(1000), kMaxRiverPx);
   int before = 1;
   for (double discharge = 0.001; discharge < 100; discharge *= 1.5) {
-    EXPECT_GE(river_style(discharge).width_px, before);
-    before = river_style(discharge).width_px;
+    EXPECT_GE(river_width_px(discharge), before);
+    before = river_width_px(discharge);
   }
-  EXPECT_NE(river_style(0.01).colour, river_style(0.3).colour);
-  EXPECT_NE(river_style(10).colour, river_style(0.3).colour);
+  EXPECT_NE(river_colour(river_width_px(0.01)), river_colour(river_width_px(0.3)));
+  EXPECT_NE(river_colour(river_width_px(10)), river_colour(river_width_px(0.3)));
+}
+
+// So a legend with these discharges shows the look of each channel.
+TEST(RiverLook, EachWidthHasItsDischargeAndColour) {
+  for (int px = 1; px <= kMaxRiverPx; ++px) {
+    EXPECT_EQ(river_width_px(river_discharge_m3_s(px)), px);
+    EXPECT_EQ(river_width_px(3 * river_discharge_m3_s(px)), px);
+    EXPECT_EQ(river_width_px(river_discharge_m3_s(px) / 3), px);
+    for (int other = 1; other < px; ++other)
+      EXPECT_GT(glm::distance(river_colour(px), river_colour(other)), 0.2F) << px << ' ' << other;
+  }
 }
 
 // Follows until a map is there or the work ends.

@@ -1,10 +1,12 @@
 // The overlay of a river network, the water under the pointer, and warnings of roads in a window.
 #include <fmt/format.h>
 
+#include <QDockWidget>
 #include <QLabel>
 #include <QPlainTextEdit>
 #include <QTimer>
 
+#include "editor/panels/cache_map.hpp"
 #include "editor/panels/message_log.hpp"
 #include "engine/scene/statistics.hpp"
 #include "engine/synthesis/mesh_supply.hpp"
@@ -69,6 +71,53 @@ TEST_F(RiversInView, TheNetworkIsSwitchedOnAndOff) {
   command("River network");
   draw();
   EXPECT_LT(difference(picture(), plain), 0.2 * difference(on, plain));
+}
+
+QColor shown_colour(int width_px) {
+  const glm::vec3 colour = river_colour(width_px);
+  return QColor::fromRgbF(colour.x, colour.y, colour.z);
+}
+
+TEST_F(RiversInView, TheMapDrawsChannelsInTheColoursOfItsLegend) {
+  // Two lines of each width, of different discharges.
+  const auto rivers = std::make_shared<RiverMap>();
+  for (int px = 1; px <= kMaxRiverPx; ++px) {
+    for (const double factor : {0.4, 2.5}) {
+      const double discharge_m3_s = factor * river_discharge_m3_s(px);
+      const auto z_m = static_cast<float>(10 * rivers->channels.size());
+      rivers->channels.push_back({{{-90, 0, z_m - 55}, {90, 0, z_m - 55}},
+                                  static_cast<float>(discharge_m3_s),
+                                  river_width_px(discharge_m3_s)});
+    }
+  }
+  CacheMap map;
+  map.resize(400, 400);
+  map.set_radius_m(100);  // 2 pixels a metre
+  map.show_cells({CacheMap::Cell()}, 1.5, 0.1);
+  map.show_rivers(rivers, {0, 0});
+  const QImage image = map.grab().toImage();
+  for (std::size_t i = 2; i < rivers->channels.size(); ++i) {  // those of 1 pixel are translucent
+    const QColor expected = shown_colour(rivers->channels[i].width_px);
+    int least = 255;
+    for (int y = -1; y <= 1; ++y) {
+      const QColor found = image.pixelColor(120, 200 + 2 * (10 * static_cast<int>(i) - 55) + y);
+      least = std::min(least, std::max({std::abs(found.red() - expected.red()),
+                                        std::abs(found.green() - expected.green()),
+                                        std::abs(found.blue() - expected.blue())}));
+    }
+    EXPECT_LT(least, 30) << i;
+  }
+  command("River network");
+  const auto* dock = window_->findChild<QDockWidget*>("map");
+  const auto has_legend = [&] {
+    return std::ranges::any_of(dock->findChildren<QLabel*>(), [](const QLabel* label) {
+      for (int px = 1; px <= kMaxRiverPx; ++px) {
+        if (!label->text().contains(shown_colour(px).name())) return false;
+      }
+      return true;
+    });
+  };
+  EXPECT_TRUE(QTest::qWaitFor(has_legend, kMaxMs));
 }
 
 TEST_F(RiversInView, TheStatusBarTellsTheWaterUnderThePointer) {
