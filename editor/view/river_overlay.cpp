@@ -14,7 +14,6 @@ namespace psygen::editor {
 namespace {
 
 constexpr std::size_t kStoreBytes = std::size_t{16} << 20;
-constexpr std::size_t kMaxRiverLines = 48'000;  // leaves room for the grid and the tools
 // Height of lines above the water. They are also nearer to the camera, at the same pixels, because
 // the renderer draws far water by 2 % nearer (shaders/water_surface.vert).
 constexpr float kLiftM = 0.15F, kLiftPerM = 0.002F, kNearer = 0.03F, kNearerFromM = 40,
@@ -79,36 +78,40 @@ void RiverOverlay::start(const world::World& world, const core::WorldPosition& e
   thread->detach();
 }
 
-void RiverOverlay::add_lines(const core::WorldPosition& eye, double block_m, double pixel,
-                             std::vector<render::Line>& lines) const {
-  if (map_ == nullptr) return;
+void add_river_lines(const RiverMap& map, const core::WorldPosition& eye, double block_m,
+                     double pixel, std::vector<render::Line>& lines) {
   const std::size_t end = lines.size() + kMaxRiverLines;
-  const glm::vec3 from_eye(core::offset_m(map_->corner, eye, block_m));
-  const auto seen_m = static_cast<float>(kSeenSquares * map_->near_m);
+  const glm::vec3 from_eye(core::offset_m(map.corner, eye, block_m));
+  const auto seen_m = static_cast<float>(kSeenSquares * map.near_m);
   const auto lifted = [](glm::vec3 at) {
     const float away_m = glm::length(at);
     at.y += kLiftM + kLiftPerM * away_m;
     return at * (1 - kNearer * glm::smoothstep(kNearerFromM, kNearerFullyM, away_m));
   };
+  // False: the limit of lines is reached.
   const auto add = [&](const RiverMap::Line& line, const glm::vec3& colour, int width_px) {
+    const float away_m = glm::length(0.5F * (line.from + line.to) + from_eye);
+    if (away_m > seen_m) return true;
+    if (3 * away_m > seen_m) width_px = std::min(width_px, 2);
     const glm::vec3 from = lifted(line.from + from_eye), to = lifted(line.to + from_eye);
     // Parallel lines a pixel apart are a wide one.
     const glm::vec3 middle = 0.5F * (from + to), across = glm::cross(to - from, middle);
-    const float length = glm::length(across), away_m = glm::length(middle);
-    if (away_m > seen_m) return;
-    if (3 * away_m > seen_m) width_px = std::min(width_px, 2);
+    const float length = glm::length(across);
     const glm::vec3 step =
-        length > 0 ? across * (away_m * static_cast<float>(pixel) / length) : glm::vec3(0.0F);
-    for (int k = 0; k < width_px && lines.size() < end; ++k) {
+        length > 0 ? across * (glm::length(middle) * static_cast<float>(pixel) / length)
+                   : glm::vec3(0.0F);
+    for (int k = 0; k < width_px; ++k) {
+      if (lines.size() == end) return false;
       const glm::vec3 aside =
           step * (static_cast<float>(k) - 0.5F * static_cast<float>(width_px - 1));
       lines.push_back({from + aside, to + aside, colour});
     }
+    return true;
   };
-  for (const RiverMap::Line& shore : map_->shores)
-    add(shore, kShoreColour, 1);
-  for (const RiverMap::Channel& channel : map_->channels)
-    add(channel.line, river_colour(channel.width_px), channel.width_px);
+  for (const RiverMap::Line& shore : map.shores)
+    if (!add(shore, kShoreColour, 1)) return;
+  for (const RiverMap::Channel& channel : map.channels)
+    if (!add(channel.line, river_colour(channel.width_px), channel.width_px)) return;
 }
 
 }  // namespace psygen::editor

@@ -17,6 +17,13 @@ namespace psygen::editor {
 // The network of a world; null: it has none.
 std::shared_ptr<const models::RiverNetwork> network_of(const world::World& world);
 
+// Appends the lines of a map's shores and channels relative to a camera, those of the far squares
+// last, but not those farther than three halves of the finest square. Stops after kMaxRiverLines,
+// which leave room for the grid and the tools. `pixel`: the size of a pixel over its distance.
+inline constexpr std::size_t kMaxRiverLines = 48'000;
+void add_river_lines(const RiverMap& map, const core::WorldPosition& eye, double block_m,
+                     double pixel, std::vector<render::Line>& lines);
+
 // One per view.
 class RiverOverlay {
  public:
@@ -34,9 +41,6 @@ class RiverOverlay {
   const std::shared_ptr<const RiverMap>& map() const { return map_; }
   // True while another thread makes a map.
   bool is_busy() const { return next_.valid(); }
-  // Appends the lines relative to a camera. `pixel`: the size of a pixel over its distance.
-  void add_lines(const core::WorldPosition& eye, double block_m, double pixel,
-                 std::vector<render::Line>& lines) const;
 
  private:
   void take();

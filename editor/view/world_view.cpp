@@ -260,7 +260,8 @@ void WorldView::write_overlays() {
   rivers_.follow(scene.world(), seen.pose.position);
   const double pixel =
       2 * std::tan(double{seen.projection.vertical_fov} / 2) / std::max(1U, seen.size.height);
-  rivers_.add_lines(seen.pose.position, seen.block_m, pixel, lines_);
+  if (rivers_.map() != nullptr)
+    add_river_lines(*rivers_.map(), seen.pose.position, seen.block_m, pixel, lines_);
   write_selection_box(seen);
   if (tool_ == nullptr) return;
   overlay_.set(tool_->marks(), scene.world());
