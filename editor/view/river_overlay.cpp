@@ -36,41 +36,46 @@ RiverOverlay::~RiverOverlay() {
 }
 
 void RiverOverlay::follow(const world::World& world, const core::WorldPosition& eye) {
-  take();
   const auto network = on_ ? network_of(world) : nullptr;
+  const Source source{network == nullptr ? 0 : network->identity(), world.blocks_x, world.blocks_z};
+  if (next_.valid() && (network == nullptr || of_next_.source != source)) *cancelled_ = true;
+  take();
   if (network == nullptr) {
     map_ = nullptr;
     return;
   }
   if (next_.valid()) return;
-  if (map_ != nullptr && of_map_ == network->identity()) {
-    const glm::dvec3 away = core::offset_m(map_->corner, eye, world.block_size_m());
+  if (map_ != nullptr && of_map_.source == source) {
+    const core::WorldPosition& around = of_map_.around;
+    const glm::dvec3 away = core::offset_m(around.block, eye, world.block_size_m()) + around.local;
     if (std::max(std::abs(away.x), std::abs(away.z)) < 0.5 * map_->near_m) return;
   }
-  start(world, eye);
+  start(*network, {source, eye});
 }
 
 void RiverOverlay::take() {
   if (!next_.valid() || next_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
     return;
-  map_ = next_.get();
+  auto made = next_.get();
+  if (*cancelled_) return;  // a part of a map, or an obsolete one
+  map_ = std::move(made);
   of_map_ = of_next_;
 }
 
-void RiverOverlay::start(const world::World& world, const core::WorldPosition& eye) {
-  const auto network = network_of(world);
-  of_next_ = network->identity();
-  if (network_ == nullptr || network_->identity() != of_next_) {
-    auto own = models::RiverNetwork::create(network->settings(), network->frame(),
+void RiverOverlay::start(const models::RiverNetwork& network, const Order& order) {
+  of_next_ = order;
+  if (network_ == nullptr || network_->identity() != network.identity()) {
+    auto own = models::RiverNetwork::create(network.settings(), network.frame(),
                                             std::make_shared<models::NetworkStore>(kStoreBytes));
     if (!own) return;  // the world's one has the same settings
     network_ = std::move(*own);
   }
   cancelled_ = std::make_shared<std::atomic<bool>>(false);
   using Task = std::packaged_task<std::shared_ptr<const RiverMap>()>;
-  const glm::dvec2 blocks(static_cast<double>(world.blocks_x), static_cast<double>(world.blocks_z));
-  const auto task = std::make_shared<Task>([own = network_, eye, blocks, cancelled = cancelled_] {
-    return std::make_shared<const RiverMap>(make_river_map(*own, eye, blocks, *cancelled));
+  const auto task = std::make_shared<Task>([own = network_, order, cancelled = cancelled_] {
+    const glm::dvec2 blocks(static_cast<double>(order.source.blocks_x),
+                            static_cast<double>(order.source.blocks_z));
+    return std::make_shared<const RiverMap>(make_river_map(*own, order.around, blocks, *cancelled));
   });
   auto thread = core::start_thread([task] { (*task)(); });
   if (!thread) return;  // another frame tries again
@@ -97,9 +102,9 @@ void add_river_lines(const RiverMap& map, const core::WorldPosition& eye, double
     // Parallel lines a pixel apart are a wide one.
     const glm::vec3 middle = 0.5F * (from + to), across = glm::cross(to - from, middle);
     const float length = glm::length(across);
-    const glm::vec3 step =
-        length > 0 ? across * (glm::length(middle) * static_cast<float>(pixel) / length)
-                   : glm::vec3(0.0F);
+    const glm::vec3 step = length > 0
+                               ? across * (glm::length(middle) * static_cast<float>(pixel) / length)
+                               : glm::vec3(0.0F);
     for (int k = 0; k < width_px; ++k) {
       if (lines.size() == end) return false;
       const glm::vec3 aside =

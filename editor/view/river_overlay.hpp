@@ -34,8 +34,9 @@ class RiverOverlay {
 
   void set_on(bool on) { on_ = on; }
   bool is_on() const { return on_; }
-  // Follows world and camera. Starts another map if the network has changed or the camera has moved
-  // by a quarter of the finest square. Takes microseconds.
+  // Follows world and camera. Starts another map if the network or the world's size has changed, or
+  // the camera has moved by a quarter of the finest square since the last map. Cancels a map in
+  // work that is needed no longer. Takes microseconds.
   void follow(const world::World& world, const core::WorldPosition& eye);
   // The newest map; null: off, no network, or not ready yet.
   const std::shared_ptr<const RiverMap>& map() const { return map_; }
@@ -43,12 +44,23 @@ class RiverOverlay {
   bool is_busy() const { return next_.valid(); }
 
  private:
+  // What a map is made of, except for the place.
+  struct Source {
+    std::uint64_t network = 0;  // its identity
+    std::int64_t blocks_x = 0, blocks_z = 0;
+    friend bool operator==(const Source&, const Source&) = default;
+  };
+  // A map's source and place.
+  struct Order {
+    Source source;
+    core::WorldPosition around;
+  };
   void take();
-  void start(const world::World& world, const core::WorldPosition& eye);
+  void start(const models::RiverNetwork& network, const Order& order);
 
   bool on_ = false;
   std::shared_ptr<const RiverMap> map_;
-  std::uint64_t of_map_ = 0, of_next_ = 0;               // identities of their networks
+  Order of_map_, of_next_;
   std::shared_ptr<const models::RiverNetwork> network_;  // with a store that the world does not use
   std::future<std::shared_ptr<const RiverMap>> next_;
   std::shared_ptr<std::atomic<bool>> cancelled_;

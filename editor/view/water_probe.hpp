@@ -1,6 +1,6 @@
 // The water under the pointer: body, surface, depth, speed and discharge. Another thread casts the
-// ray, because the ground of a river network takes milliseconds a block. It drops questions while one
-// is in work, so ask again. Main thread, except for water_facts().
+// ray, because the ground of a river network takes milliseconds a block. It drops questions while
+// one is in work, so ask again. Main thread, except for water_facts().
 #pragma once
 
 #include <future>

@@ -213,6 +213,77 @@ TEST(RiverOverlay, FollowsSwitchCameraAndWorld) {
   EXPECT_EQ(overlay.map(), nullptr);
 }
 
+// A complete map differs from a part of it, and from that of another world.
+std::size_t size_of(const RiverMap& map) {
+  return map.channels.size() + map.shores.size() + map.divides.size();
+}
+
+void follow_to_first(RiverOverlay& overlay, const World& world, const core::WorldPosition& eye) {
+  const QDeadlineTimer end(60'000);
+  while (overlay.map() == nullptr && !end.hasExpired()) {
+    overlay.follow(world, eye);
+    QThread::msleep(1);
+  }
+}
+
+TEST(RiverOverlay, DropsAMapInWorkThatIsNeededNoLonger) {
+  const World& world = network_world();
+  const World other = parsed(world::testing::replaced(network_text(), "seed = 11", "seed = 12"));
+  const World small =
+      parsed(world::testing::replaced(network_text(), "blocks = [0, 0]", "blocks = [40, 50]"));
+  const core::WorldPosition eye = world.position({1000, 1000});
+  const std::size_t expected = size_of(map_of(world, {1000, 1000}));
+  for (const World* before : {&other, &small}) {
+    RiverOverlay overlay;
+    overlay.set_on(true);
+    overlay.follow(*before, eye);
+    ASSERT_TRUE(overlay.is_busy());
+    follow_to_first(overlay, world, eye);
+    ASSERT_NE(overlay.map(), nullptr);
+    EXPECT_EQ(size_of(*overlay.map()), expected) << "no map of the other world comes first";
+  }
+  RiverOverlay overlay;
+  overlay.set_on(true);
+  overlay.follow(world, eye);
+  overlay.set_on(false);
+  overlay.follow(world, eye);
+  overlay.set_on(true);
+  follow_to_first(overlay, world, eye);
+  ASSERT_NE(overlay.map(), nullptr);
+  EXPECT_EQ(size_of(*overlay.map()), expected) << "no part of a map is shown";
+}
+
+TEST(RiverOverlay, MakesAnotherMapIfTheSizeOfTheWorldChanges) {
+  const World& world = network_world();
+  const World small =
+      parsed(world::testing::replaced(network_text(), "blocks = [0, 0]", "blocks = [40, 50]"));
+  const core::WorldPosition eye = world.position({1000, 1000});
+  RiverOverlay overlay;
+  overlay.set_on(true);
+  follow(overlay, world, eye);
+  ASSERT_NE(overlay.map(), nullptr);
+  const std::size_t whole = size_of(*overlay.map());
+  follow(overlay, small, eye);
+  EXPECT_LT(size_of(*overlay.map()), whole);
+}
+
+TEST(RiverOverlay, MeasuresMovesFromThePlaceOfItsMap) {
+  const World& world = network_world();
+  const double block_m = world.block_size_m(), at_m = 94 * block_m - 1;  // far from its corner
+  RiverOverlay overlay;
+  overlay.set_on(true);
+  follow(overlay, world, world.position({at_m, at_m}));
+  ASSERT_NE(overlay.map(), nullptr);
+  const auto before = overlay.map();
+  const double quarter_m = 0.5 * before->near_m;
+  for (const double side : {-1.0, 1.0}) {
+    follow(overlay, world, world.position({at_m, at_m + side * (quarter_m - 2)}));
+    EXPECT_EQ(overlay.map(), before) << side;
+  }
+  follow(overlay, world, world.position({at_m - quarter_m - 2, at_m}));
+  EXPECT_NE(overlay.map(), before);
+}
+
 TEST(WaterFacts, TellBodyDepthSpeedAndDischarge) {
   const World& world = world::testing::river_world();
   const auto at = [&](double x_m, double z_m) {
