@@ -305,18 +305,18 @@ double TerrainShape::layer_work(LatticeSpan x, LatticeSpan z, double heights,
   const double spacing =
       static_cast<double>(x.last - x.first) / static_cast<double>(std::max<std::size_t>(side, 1));
   const RiverNetwork* const network = stack->network.get();
-  work += network != nullptr
-              ? network->work(heights * of_height.guide_reads,
-                              guide_detail(detail, GroundMask::kGuideCells))
-              : of_height.guide_reads *
-                    noise.work(side, side, spacing,
-                               NoiseGuide(noise, kMaxOctaves).octaves(GroundMask::kGuideCells));
-  if (network != nullptr)
+  const double reads = of_height.guide_reads;
+  if (network == nullptr) {
+    const int wide = NoiseGuide(noise, kMaxOctaves).octaves(GroundMask::kGuideCells);
+    work += reads * noise.work(side, side, spacing, wide);
+  } else {
+    work += network->work(reads * heights, guide_detail(detail, GroundMask::kGuideCells));
     // Neighbours share patches, also those of light from afar.
     work += network->work(heights, detail) +
             network->patch_work(std::ldexp(size - 1, node_level), detail) +
             noise.work(side, side, spacing,
                        std::min(octaves(detail), octaves_of_nodes(noise, *network)));
+  }
   const std::optional<ErosionFilter> erosion = filter(detail);
   if (!erosion || (network != nullptr && erosion->is_plain())) return work;
   work += erosion->work(side, side, spacing);
