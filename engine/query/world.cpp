@@ -300,8 +300,18 @@ bool World::meet_water(const Course& course, double t, Hit& hit) {
   return true;
 }
 
+// Halves a step from `low` to `high` until it is short. `is_low(t)` tells whether a place belongs
+// to its start.
+template <class IsLow>
+void halve_step(double& low, double& high, const IsLow& is_low) {
+  for (int i = 0; i < 40; ++i) {
+    const double middle = (low + high) / 2;
+    (is_low(middle) ? low : high) = middle;
+  }
+}
+
 // The sea is a plane. Blocks with rivers and lakes are searched in steps, and the step with the
-// surface is halved.
+// surface is halved. A step over the border of the water ends, or begins, at the border.
 void World::cast_water(const Course& course, Hit& hit) {
   const double sea_m = world_->water.level_m;
   const double to_sea = (sea_m - course.origin.local.y) / course.direction.y;  // NaN: along it
@@ -335,18 +345,30 @@ void World::cast_water(const Course& course, Hit& hit) {
           const double end = std::min(to, hit.distance_m);
           std::optional<double> before = above_m(from);
           for (double t = from; t < end;) {
-            double next = std::min(t + step_m, end), low = t;
-            const auto here = above_m(next);
-            if (before && here && (*before < 0) != (*here < 0)) {
-              double high = next;
-              for (int i = 0; i < 40; ++i) {
-                const double middle = (low + high) / 2;
-                const auto there = above_m(middle);
-                ((there && (*there < 0) == (*before < 0)) ? low : high) = middle;
-              }
+            const double next = std::min(t + step_m, end);
+            const auto after = above_m(next);
+            double low = t, high = next;
+            auto above_low = before, above_high = after;
+            if (before && !after) {
+              double dry = next;
+              high = t;
+              halve_step(high, dry, [&](double at) { return above_m(at).has_value(); });
+              above_high = above_m(high);
+            } else if (!before && after) {
+              double dry = t;
+              low = next;
+              halve_step(dry, low, [&](double at) { return !above_m(at); });
+              above_low = above_m(low);
+            }
+            if (above_low && above_high && (*above_low < 0) != (*above_high < 0)) {
+              const bool begins_below = *above_low < 0;
+              halve_step(low, high, [&](double at) {
+                const auto there = above_m(at);
+                return there && (*there < 0) == begins_below;
+              });
               if (meet_water(course, high, hit)) return false;
             }
-            before = here;
+            before = after;
             t = next;
           }
           return true;

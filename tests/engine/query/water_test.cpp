@@ -192,8 +192,8 @@ TEST(WaterQueryOfANetwork, ARayOverDryBlocksFindsTheRiverBeyond) {
     const auto hit = query.cast(ray);
     ASSERT_TRUE(hit);
     ASSERT_EQ(hit->kind, HitKind::kWater) << rays;
-    ASSERT_LE(hit->distance_m, to_river_m + 1e-3) << rays;
-    if (hit->distance_m < to_river_m - 1) continue;  // water of another place is nearer
+    ASSERT_LE(hit->distance_m, to_river_m + 0.03) << rays;  // a network rounds places to 1/64 m
+    if (hit->distance_m < to_river_m - 1) continue;         // water of another place is nearer
     int dry = 0;
     for (double t = 0; t < kAwayM; t += block_m) {
       const glm::dvec3 at = ray.origin.local + t / kAwayM * ray.direction;
