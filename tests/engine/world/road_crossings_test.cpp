@@ -57,7 +57,8 @@ TEST(RoadCrossings, ARoadThroughANetworkCrossesItsRivers) {
   for (const std::string& sentence : found) {
     double x_m = 0, z_m = 0;
     const auto at = sentence.find(" at ");
-    if (std::sscanf(sentence.c_str() + at, " at %lf, %lf m,", &x_m, &z_m) != 2) continue;
+    ASSERT_NE(at, std::string::npos) << sentence;
+    ASSERT_EQ(std::sscanf(sentence.c_str() + at, " at %lf, %lf m,", &x_m, &z_m), 2) << sentence;
     const core::WorldPosition place = world.position({x_m, z_m});
     const bool is_river = sentence.find("a river of the network") != std::string::npos;
     EXPECT_EQ(river_discharge_m3_s(world, place).has_value(), is_river) << sentence;

@@ -133,7 +133,8 @@ TEST(GroundPatches, OfAnotherNetworkAreMadeWithTheWorldThatFollows) {
                     std::move(registry), scene->snapshot());
   ASSERT_TRUE(prepared);
   const models::RiverNetwork& network = *prepared->facts.world.layer()->ground.network;
-  const double cells = static_cast<double>(prepared->facts.world.terrain.integer(models::kTerrainSize) - 1);
+  const double cells =
+      static_cast<double>(prepared->facts.world.terrain.integer(models::kTerrainSize) - 1);
   for (const visibility::NodeCoord& node : nodes_of_scene(*scene)) {
     const auto first = static_cast<std::int64_t>(cells * std::ldexp(node.coord.x, node.level));
     const auto last = static_cast<std::int64_t>(cells * std::ldexp(node.coord.z, node.level));

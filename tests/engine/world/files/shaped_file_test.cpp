@@ -1,5 +1,6 @@
 #include "engine/world/files/shaped_file.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "engine/world/files/text_edit.hpp"
@@ -275,6 +276,25 @@ TEST(ShapedFile, ARoadThatCoversAnAreaIsRejected) {
     points += i % 2 == 0 ? ", [10, 10]" : ", [90, 60]";
   const std::string road = "[[road]]\npoints_m = " + points + "]\nwidth_m = 0.5\n";
   EXPECT_THAT(shape_error(road), HasSubstr("more than 1000 pieces of the road"));
+}
+
+TEST(ShapedFile, TooManyOverlappingShapesAreRejected) {
+  const std::string large_blocks =
+      replaced(kSmallWorld, "block_vertices = 33", "block_vertices = 128");
+  // To and fro in lanes a metre apart, which do not touch.
+  const auto error = [&](int lanes) {
+    std::string points;
+    for (int i = 0; i < 2 * lanes; ++i)
+      points +=
+          fmt::format("{}[{}, {}]", i == 0 ? "" : ", ", (i + 1) / 2 % 2 == 0 ? 8 : 248, 8 + i / 2);
+    const auto world = read_shaped_world(
+        "[[road]]\npoints_m = [" + points + "]\nwidth_m = 0.5\nborder_m = 0\n", large_blocks);
+    return world ? "" : world.error().message;
+  };
+  EXPECT_EQ(error(20), "");
+  EXPECT_THAT(error(230),
+              AllOf(HasSubstr("w.toml:25: road[0].points_m"),
+                    HasSubstr("1024 stamps and pieces of roads or water overlap there")));
 }
 
 }  // namespace
