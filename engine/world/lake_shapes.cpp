@@ -202,8 +202,9 @@ class LakeMaker {
     }
     for (const glm::dvec2& at_m : places) {
       const auto water = below_.water_over(at_m);
-      if (!water || water->is_river || water->widths > 0.5) continue;
+      if (!water) continue;
       const bool of_network = water->body >= models::kFirstNetworkBody;
+      if (water->is_river && !of_network) continue;
       return water_error(
           key(), fmt::format("the lake overlaps {} near {:.1f}, {:.1f} m",
                              of_network ? "a river or lake of the river network" : "another lake",

@@ -24,7 +24,7 @@ class WaterOnRoads {
     const core::WorldPosition at = world_.position(at_m);
     enter(at.block);
     if (may_have_water_) {
-      if (const auto water = below_.water_over(at_m)) return name_of(*water, at);
+      if (const auto water = below_.water_over(at_m)) return name_of(*water);
     }
     return world_.water.exists() && is_below_sea(at) ? "the sea" : std::string();
   }
@@ -45,12 +45,9 @@ class WaterOnRoads {
       return road.weight >= 1 && road.height_m < world_.water.level_m;
     });
   }
-  std::string name_of(const models::BodySurface& water, const core::WorldPosition& at) const {
-    if (water.body >= models::kFirstNetworkBody) {
-      const bool is_river =
-          layer_.ground.discharge_over(at.block, {at.local.x, at.local.z}, block_m_).has_value();
-      return is_river ? "a river of the network" : "a lake of the network";
-    }
+  std::string name_of(const models::BodySurface& water) const {
+    if (water.body >= models::kFirstNetworkBody)
+      return water.is_river ? "a river of the network" : "a lake of the network";
     const std::size_t lakes = world_.shaped.lakes.size(), number = water.body - kSea;
     return water.is_river ? fmt::format("river {}", number - lakes)
                           : fmt::format("lake {}", number);

@@ -22,28 +22,30 @@ std::uint64_t with_points(std::uint64_t hash, const std::vector<glm::dvec2>& poi
   return hash;
 }
 
+// The river or lake that owns a place, of a layer; nothing: it is dry, or the sea stands higher.
+std::optional<models::BodySurface> body_over(const World& world, const models::EditLayer* layer,
+                                             const core::WorldPosition& at) {
+  if (layer == nullptr) return std::nullopt;
+  const double block_m = world.block_size_m();
+  const core::WorldPosition place = core::normalised(at, block_m);
+  const auto body = layer->ground.water_over(place.block, {place.local.x, place.local.z}, block_m);
+  if (body && world.water.exists() && body->surface_m < world.water.level_m) return std::nullopt;
+  return body;
+}
+
 // The surface over a place, of a layer's rivers and lakes and of the sea.
 std::optional<WaterSurface> surface_over(const World& world, const models::EditLayer* layer,
                                          const core::WorldPosition& at) {
   const core::RoundToNearest rounding;
-  const bool has_sea = world.water.exists();
-  if (layer != nullptr) {
-    const double block_m = world.block_size_m();
-    const core::WorldPosition place = core::normalised(at, block_m);
-    const auto body =
-        layer->ground.water_over(place.block, {place.local.x, place.local.z}, block_m);
-    if (body && (!has_sea || body->surface_m >= world.water.level_m)) {
-      const double steep =
-          std::sqrt(1 + body->slope.x * body->slope.x + body->slope.y * body->slope.y);
-      return WaterSurface{
-          .surface_m = body->surface_m,
-          .normal = glm::vec3(-body->slope.x, 1, -body->slope.y) / static_cast<float>(steep),
-          .flow_m_s = glm::vec2(body->flow_m_s),
-          .foam = static_cast<float>(body->foam),
-          .body = body->body};
-    }
-  }
-  return sea_surface(world);
+  const auto body = body_over(world, layer, at);
+  if (!body) return sea_surface(world);
+  const double steep = std::sqrt(1 + body->slope.x * body->slope.x + body->slope.y * body->slope.y);
+  return WaterSurface{
+      .surface_m = body->surface_m,
+      .normal = glm::vec3(-body->slope.x, 1, -body->slope.y) / static_cast<float>(steep),
+      .flow_m_s = glm::vec2(body->flow_m_s),
+      .foam = static_cast<float>(body->foam),
+      .body = body->body};
 }
 
 }  // namespace
@@ -71,11 +73,9 @@ std::optional<WaterSurface> sea_surface(const World& world) {
 
 std::optional<double> river_discharge_m3_s(const World& world, const core::WorldPosition& at) {
   const core::RoundToNearest rounding;
-  const auto surface = water_surface(world, at);
-  if (!surface || surface->body == kSea) return std::nullopt;
-  const double block_m = world.block_size_m();
-  const core::WorldPosition place = core::normalised(at, block_m);
-  return world.layer()->ground.discharge_over(place.block, {place.local.x, place.local.z}, block_m);
+  const auto body = body_over(world, world.layer().get(), at);
+  if (!body || !body->is_river) return std::nullopt;
+  return body->discharge_m3_s;
 }
 
 std::uint64_t bodies_hash_in(const World& world, core::BlockCoord block) {

@@ -39,35 +39,23 @@ std::vector<const GroundEdit*> GroundStack::water_in(const QuadCoord& node, doub
   return water;
 }
 
-std::optional<BodySurface> GroundStack::made_water_over(core::BlockCoord block, glm::dvec2 local_m,
-                                                        double block_m) const {
+std::optional<BodySurface> GroundStack::water_over(core::BlockCoord block, glm::dvec2 local_m,
+                                                   double block_m) const {
   const auto a = shapes.water_over(block, local_m, block_m);
   const auto b = edits.water_over(block, local_m, block_m);
   if (a && b) return a->owns_before(*b) ? a : b;
-  return a ? a : b;
-}
-
-std::optional<BodySurface> GroundStack::water_over(core::BlockCoord block, glm::dvec2 local_m,
-                                                   double block_m) const {
-  const auto made = made_water_over(block, local_m, block_m);
-  if (made || network == nullptr) return made;
+  if (a) return a;
+  if (b || network == nullptr) return b;
   // The sea of the world is no body of its ground.
-  const auto water = network->inland_water_at({block, {local_m.x, 0, local_m.y}});
-  if (!water) return std::nullopt;
+  const auto found = network->inland_water_at({block, {local_m.x, 0, local_m.y}});
+  if (!found) return std::nullopt;
   BodySurface surface;
-  surface.surface_m = double{water->surface_m};
-  surface.flow_m_s = glm::dvec2(water->flow_m_s);
-  surface.body = kFirstNetworkBody | (water->body & ~kFirstNetworkBody);
+  surface.surface_m = double{found->water.surface_m};
+  surface.flow_m_s = glm::dvec2(found->water.flow_m_s);
+  surface.body = kFirstNetworkBody | (found->water.body & ~kFirstNetworkBody);
+  surface.is_river = found->channel.has_value();
+  if (found->channel) surface.discharge_m3_s = found->channel->discharge_m3_s;
   return surface;
-}
-
-std::optional<double> GroundStack::discharge_over(core::BlockCoord block, glm::dvec2 local_m,
-                                                  double block_m) const {
-  if (const auto made = made_water_over(block, local_m, block_m))
-    return made->is_river ? std::optional(made->discharge_m3_s) : std::nullopt;
-  if (network == nullptr) return std::nullopt;
-  const auto channel = network->channel_at({block, {local_m.x, 0, local_m.y}});
-  return channel ? std::optional(channel->discharge_m3_s) : std::nullopt;
 }
 
 bool GroundStack::may_have_water(core::BlockCoord block, double margin_m, double block_m) const {

@@ -64,10 +64,6 @@ struct GroundStack {
   // it. The place must be normalised. Some hundred nanoseconds; 2 µs in the water of a network.
   std::optional<BodySurface> water_over(core::BlockCoord block, glm::dvec2 local_m,
                                         double block_m) const;
-  // Returns the discharge in m³/s of the river that owns a place, made by hand or of the network;
-  // nothing: a lake owns it, or no water reaches it. As water_over().
-  std::optional<double> discharge_over(core::BlockCoord block, glm::dvec2 local_m,
-                                       double block_m) const;
   // False if water_over() has nothing for any place in a block, or within `margin_m` along each
   // axis beyond it. May be true although it has nothing; always where the margin is much wider than
   // the patches of a network. Some hundred nanoseconds.
@@ -86,9 +82,6 @@ struct GroundStack {
 
  private:
   std::uint64_t fixed_identity() const;
-  // water_over() without the network.
-  std::optional<BodySurface> made_water_over(core::BlockCoord block, glm::dvec2 local_m,
-                                             double block_m) const;
   static bool same_fixed_part(const GroundStack& a, const GroundStack& b) {
     const auto network_of = [](const GroundStack& s) {
       return s.network ? s.network->identity() : 0;

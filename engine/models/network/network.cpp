@@ -335,27 +335,22 @@ NetworkWater RiverNetwork::water_at(const core::WorldPosition& place) const {
   return water_at(in_patch(place));
 }
 
-std::optional<NetworkWater> RiverNetwork::inland_water_at(const PatchPlace& at) {
+std::optional<InlandWater> RiverNetwork::inland_water_at(const core::WorldPosition& place) const {
+  const PatchPlace at = in_patch(place);
   if (!at.patch->may_have_water({at.x, at.z, at.x, at.z})) return std::nullopt;
   const NetworkWater water = water_at(at);
   if (!(water.depth_m > 0) || water.body == network::kSeaBody) return std::nullopt;
-  return water;
+  return InlandWater{water, channel_of(water, at)};
 }
 
-std::optional<NetworkWater> RiverNetwork::inland_water_at(const core::WorldPosition& place) const {
-  return inland_water_at(in_patch(place));
-}
-
-std::optional<NetworkChannel> RiverNetwork::channel_at(const core::WorldPosition& place) const {
+std::optional<NetworkChannel> RiverNetwork::channel_of(const NetworkWater& water,
+                                                       const PatchPlace& at) {
   constexpr float kEqualM = 0.02F;
-  const PatchPlace at = in_patch(place);
-  const auto water = inland_water_at(at);
-  if (!water) return std::nullopt;
   const network::Patch& patch = *at.patch;
   const network::Box here{at.x, at.z, at.x, at.z};
   // Channels run through lakes, at their level.
   const bool in_lake = std::ranges::any_of(patch.lakes, [&](const network::Lake& lake) {
-    return std::abs(lake.level_m - water->surface_m) < kEqualM;
+    return std::abs(lake.level_m - water.surface_m) < kEqualM;
   });
   if (in_lake && patch.may_have_lake(here)) return std::nullopt;
   std::optional<NetworkChannel> channel;

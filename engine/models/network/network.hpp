@@ -31,6 +31,12 @@ struct NetworkChannel {
   double discharge_m3_s = 0, width_m = 0;
 };
 
+// The water of a lake or a channel at a place.
+struct InlandWater {
+  NetworkWater water;                     // not dry
+  std::optional<NetworkChannel> channel;  // whose water it is; nothing: of a lake
+};
+
 class RiverNetwork {
  public:
   // Lattice points in cells of node level 0, ascending.
@@ -74,12 +80,9 @@ class RiverNetwork {
   // The water at a place over ground that nothing but the network shaped, at detail 0. Places are
   // finite and rounded to 1/64 cell; at vertices it has the bits of evaluate().
   NetworkWater water_at(const core::WorldPosition& place) const;
-  // The same without the sea: nothing where no river and no lake is. Dry places take a tenth of
-  // the time.
-  std::optional<NetworkWater> inland_water_at(const core::WorldPosition& place) const;
-  // The channel whose water covers a place, the one whose middle is nearer in its widths; nothing
-  // on dry land, in lakes and in the sea. About 2 µs in water.
-  std::optional<NetworkChannel> channel_at(const core::WorldPosition& place) const;
+  // The same without the sea: nothing where no river and no lake is. Of channels that meet, the one
+  // whose middle is nearer in its widths. Dry places take a tenth of the time.
+  std::optional<InlandWater> inland_water_at(const core::WorldPosition& place) const;
   // False if inland_water_at() has nothing at any place in a square, its border included. May be
   // true although it has nothing; always for squares over more than four patches.
   bool may_have_water(const Cells& cells) const;
@@ -143,7 +146,7 @@ class RiverNetwork {
   };
   PatchPlace in_patch(const core::WorldPosition& place) const;
   static NetworkWater water_at(const PatchPlace& place);
-  static std::optional<NetworkWater> inland_water_at(const PatchPlace& place);
+  static std::optional<NetworkChannel> channel_of(const NetworkWater& water, const PatchPlace& at);
   // Calls visit(patch, samples, first column, first row) for parts of a lattice.
   template <class Visit>
   void each_part(const Lattice& at, GroundDetail detail, const Visit& visit) const;

@@ -1,4 +1,5 @@
 // A river network as the ground of a world: in files, nodes of all levels, queries, hashes, water.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -111,7 +112,6 @@ TEST(NetworkGround, OfQueriesEqualsThatOfMeshes) {
   }
 }
 
-// Rivers lie at many heights, above their beds and below their banks, and flow.
 // All heights of a node, asked for as placement does.
 std::vector<std::uint16_t> heights_of(const World& world, core::BlockCoord node, int level = 0) {
   std::vector<std::uint16_t> heights(kSide * kSide);
@@ -223,6 +223,45 @@ TEST(NetworkGround, KeepsNoHeightsOverAnEdit) {
   EXPECT_EQ(heights_of(world, {3, -2}), before);
 }
 
+// A river or a lake of the network, and the direction across it.
+struct NetworkBody {
+  glm::dvec2 at_m, across;
+};
+NetworkBody wet_place(const World& world, bool is_river) {
+  for (double z_m = 20; z_m < 4000; z_m += 20) {
+    for (double x_m = 20; x_m < 4000; x_m += 5) {
+      const core::WorldPosition at = world.position({x_m, z_m});
+      const auto surface = water_surface(world, at);
+      if (!surface || surface->body < models::kFirstNetworkBody) continue;
+      if (river_discharge_m3_s(world, at).has_value() != is_river) continue;
+      const glm::dvec2 flow(surface->flow_m_s);
+      const double speed = std::hypot(flow.x, flow.y);
+      return {{x_m, z_m}, speed > 0 ? glm::dvec2(-flow.y, flow.x) / speed : glm::dvec2(1, 0)};
+    }
+  }
+  ADD_FAILURE() << "no such water";
+  return {};
+}
+std::string river_between(glm::dvec2 a_m, glm::dvec2 b_m) {
+  return fmt::format("[[river]]\npoints_m = [[{}, {}], [{}, {}]]\nwidth_m = 3\n", a_m.x, a_m.y,
+                     b_m.x, b_m.y);
+}
+
+TEST(NetworkGround, RiversMadeByHandMayEndInThoseOfTheNetworkButNotCrossThem) {
+  const auto [river_m, across] = wet_place(parsed(network_text()), true);
+  const auto error = [](const std::string& tables) {
+    models::Registry fresh = models::make_standard_registry();
+    const auto world = parse_world(network_text() + tables, "w.toml", fresh);
+    return world ? "" : world.error().message;
+  };
+  const glm::dvec2 from_m = river_m - 60.0 * across, to_m = river_m + 60.0 * across;
+  EXPECT_THAT(error(river_between(from_m, to_m)),
+              HasSubstr("the river crosses another river near"));
+  EXPECT_EQ(error(river_between(from_m, river_m)), "");
+  EXPECT_EQ(error(river_between(river_m, to_m)), "");
+}
+
+// Rivers lie at many heights, above their beds and below their banks, and flow.
 TEST(NetworkGround, HasRiversAtManyHeights) {
   const World world = parsed(network_text());
   std::size_t wet = 0, flowing = 0;

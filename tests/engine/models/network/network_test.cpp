@@ -209,10 +209,10 @@ TEST(RiverNetwork, KnowsSquaresAndPlacesWithoutInlandWater) {
         sea += is_sea ? 1 : 0;
         if (!inland) continue;
         ++wet_here;
-        ASSERT_EQ(inland->surface_m, water.surface_m);
-        ASSERT_EQ(inland->depth_m, water.depth_m);
-        ASSERT_EQ(inland->flow_m_s, water.flow_m_s);
-        ASSERT_EQ(inland->body, water.body);
+        ASSERT_EQ(inland->water.surface_m, water.surface_m);
+        ASSERT_EQ(inland->water.depth_m, water.depth_m);
+        ASSERT_EQ(inland->water.flow_m_s, water.flow_m_s);
+        ASSERT_EQ(inland->water.body, water.body);
       }
       wet += wet_here;
       ASSERT_TRUE(may || wet_here == 0) << place[0] << " " << place[1];
@@ -535,9 +535,10 @@ TEST(RiverNetwork, ChannelsHaveTheDischargeOfTheirDrainageArea) {
     const double x_m = static_cast<double>(patch->x + c.x) / kUnitsPerCell + double{c.px[kMiddle]};
     const double z_m = static_cast<double>(patch->z + c.z) / kUnitsPerCell + double{c.pz[kMiddle]};
     const core::WorldPosition at = position_of(x_m, z_m);
-    const NetworkWater water = network->water_at(at);
-    const auto channel = network->channel_at(at);
-    if (!channel || water.body != c.body) continue;
+    const auto found = network->inland_water_at(at);
+    if (!found || !found->channel || found->water.body != c.body) continue;
+    const NetworkWater& water = found->water;
+    const auto& channel = found->channel;
     const float width_m =
         network::width_m(c, static_cast<float>(kMiddle) / network::Curve::kChords);
     if (std::abs(channel->width_m - double{width_m}) > 1e-3) continue;  // another arm is nearer
@@ -555,28 +556,26 @@ TEST(RiverNetwork, ChannelsHaveTheDischargeOfTheirDrainageArea) {
   EXPECT_GT(most, 20 * least);
 }
 
-TEST(RiverNetwork, HasNoChannelOnLandInLakesAndInTheSea) {
+TEST(RiverNetwork, LakesHaveNoChannel) {
   const auto network = network_of({.lake_share = 0.12, .sea_share = 0.2});
   std::size_t channels = 0, lakes = 0;
   for (const Place& place : places(150, 300'000)) {
     for (std::int64_t i = 0; i < 30 * 30; ++i) {
       const core::WorldPosition at = position_of(static_cast<double>(place[0] + 5 * (i % 30)),
                                                  static_cast<double>(place[1] + 5 * (i / 30)));
-      const auto water = network->inland_water_at(at);
-      const auto channel = network->channel_at(at);
-      ASSERT_TRUE(water || !channel);
-      if (!water) continue;
-      ++(channel ? channels : lakes);
-      if (channel) {
-        ASSERT_GT(channel->discharge_m3_s, 0);
+      const auto found = network->inland_water_at(at);
+      if (!found) continue;
+      ++(found->channel ? channels : lakes);
+      if (found->channel) {
+        ASSERT_GT(found->channel->discharge_m3_s, 0);
       } else {
         // Water without a channel is still, or has the level of a lake through which one runs.
         const auto patch =
             network->patch(network->tile_of(place[0] + 5 * (i % 30), place[1] + 5 * (i / 30), {}));
         const bool is_level = std::ranges::any_of(patch->lakes, [&](const network::Lake& lake) {
-          return std::abs(lake.level_m - water->surface_m) < 0.02F;
+          return std::abs(lake.level_m - found->water.surface_m) < 0.02F;
         });
-        ASSERT_TRUE(is_level || water->flow_m_s == glm::vec2(0.0F));
+        ASSERT_TRUE(is_level || found->water.flow_m_s == glm::vec2(0.0F));
       }
     }
   }
