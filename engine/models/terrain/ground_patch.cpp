@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/models/edits.hpp"
+#include "engine/models/task_type.hpp"
 #include "engine/models/terrain/grid.hpp"
 #include "engine/models/terrain/light.hpp"
 #include "engine/models/terrain/shape.hpp"
@@ -18,31 +19,21 @@ constexpr ParameterSpec kSchema[] = {
     placed(integer_parameter("tile_x", "1", 0, kTiles, {0, 0}, "tile along x")),
     placed(integer_parameter("tile_z", "1", 0, kTiles, {0, 0}, "tile along z"))};
 
-class GroundPatchType final : public ModelType {
+class GroundPatchType final : public TaskType {
  public:
   std::string_view name() const override { return "ground_patch"; }
   std::string_view doc() const override { return "rivers and heights of a part of a network"; }
   std::span<const ParameterSpec> parameters() const override { return kSchema; }
-  int level_count() const override { return 1; }
-  double level_error_m(const Parameters&, int) const override { return 0; }
-  core::Bounds bounds(const Parameters&) const override { return {glm::vec3(0), glm::vec3(1)}; }
-  MeshSize mesh_size(const Parameters&, int) const override {
-    return {3, 3, 0, core::VertexLayout::kModel};
-  }
-  double complexity(const Parameters&, int) const override { return 1; }
   // The coarsest patches need more of the root.
   double steps(const Parameters& p, int) const override { return p.integer(kLevel) < 3 ? 3 : 1; }
   double step_seconds() const override { return 2e-3; }
-  double log2_cost(const Parameters&) const override { return 0; }
-  bool is_seen_from_far() const override { return false; }
   bool may_run_on_main_thread() const override { return true; }
-  core::Bounds synthesise(const Parameters& p, int, const MeshView& out) const override {
-    if (p.edits() != nullptr && p.edits()->ground.network != nullptr)
-      static_cast<void>(p.edits()->ground.network->patch(
-          {static_cast<int>(p.integer(kLevel)), p.integer(kI), p.integer(kJ)}));
-    std::ranges::fill(out.vertices, std::byte{0});
-    std::ranges::fill(out.indices, std::uint16_t{0});
-    return {glm::vec3(0.5F), glm::vec3(0.5F)};
+
+ private:
+  void perform(const Parameters& p) const override {
+    if (p.edits() == nullptr || p.edits()->ground.network == nullptr) return;
+    static_cast<void>(p.edits()->ground.network->patch(
+        {static_cast<int>(p.integer(kLevel)), p.integer(kI), p.integer(kJ)}));
   }
 };
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "engine/core/assert.hpp"
+#include "engine/models/task_type.hpp"
 #include "engine/world/far/proxy_writer.hpp"
 #include "engine/world/far/scatter.hpp"
 
@@ -139,27 +140,15 @@ constexpr ParameterSpec kImpostorSchema[] = {
         models::SoftRange{0, core::kMaxImpostors - 1}, "number of the impostor")),
 };
 
-class ImpostorType final : public ModelType {
+class ImpostorType final : public models::TaskType {
  public:
   std::string_view name() const override { return "tree_picture"; }
   std::string_view doc() const override { return "a tree from several directions, as a texture"; }
   std::span<const ParameterSpec> parameters() const override { return kImpostorSchema; }
-  int level_count() const override { return 1; }
-  double level_error_m(const Parameters&, int) const override { return 0; }
-  core::Bounds bounds(const Parameters&) const override { return {glm::vec3(0), glm::vec3(1)}; }
-  MeshSize mesh_size(const Parameters&, int) const override {
-    return {3, 3, 0, core::VertexLayout::kModel};
-  }
-  double complexity(const Parameters&, int) const override { return 1; }
-  double steps(const Parameters&, int) const override { return 1; }
   double step_seconds() const override { return 10e-3; }
-  double log2_cost(const Parameters&) const override { return 0; }
-  bool is_seen_from_far() const override { return false; }
-  core::Bounds synthesise(const Parameters&, int, const MeshView& out) const override {
-    std::ranges::fill(out.vertices, std::byte{0});
-    std::ranges::fill(out.indices, std::uint16_t{0});
-    return {glm::vec3(0.5F), glm::vec3(0.5F)};
-  }
+
+ private:
+  void perform(const Parameters&) const override {}
 };
 
 class QuadType final : public ModelType {
