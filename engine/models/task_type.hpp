@@ -9,6 +9,7 @@
 
 namespace psygen::models {
 
+// Base of such types. perform() runs in any thread, and does nothing more if its result exists.
 class TaskType : public ModelType {
  public:
   int level_count() const final { return 1; }
