@@ -101,10 +101,10 @@ HWY_INLINE void add_channel(const Curve& c, const Beside& b, bool flow, Water& w
   w.body = hn::IfThenElse(hn::RebindMask(di, more), hn::Set(di, static_cast<std::int32_t>(c.body)),
                           w.body);
   if (!flow) return;
-  // Discharge over cross-section, fastest in the middle.
+  // The vectors of middle_speed_m_s(), as a parabola across.
   const Float deep = depth_of(b);
-  const Float mean = hn::Div(set(2.25F * c.discharge_m3_s), hn::Mul(b.width, deep));
-  const Float speed = hn::Mul(hn::Min(mean, set(6)), inside);
+  const Float middle = hn::Div(set(kMiddleSpeed * c.discharge_m3_s), hn::Mul(b.width, deep));
+  const Float speed = hn::Mul(hn::Min(middle, set(kFastestM_S)), inside);
   const Float o = hn::Sub(set(1), b.t);
   const Float tx = hn::Add(hn::Mul(o, set(c.turn[0])), hn::Mul(b.t, set(c.turn[2])));
   const Float tz = hn::Add(hn::Mul(o, set(c.turn[1])), hn::Mul(b.t, set(c.turn[3])));
@@ -139,8 +139,8 @@ HWY_INLINE Bank bank_of(const Beside& b) {
     return hn::Mul(hn::Mul(hn::Sub(set(1), smooth(s)), grown), b.abeam);
   };
   Bank bank;
-  bank.height = hn::Add(b.surface, hn::Mul(set(0.3F), hn::Min(edge, set(1))));
-  bank.rise = hn::Mul(set(0.12F), edge);
+  bank.height = hn::Add(b.surface, hn::Mul(set(kBankRiseM), hn::Min(edge, set(1))));
+  bank.rise = hn::Mul(set(kValleySlope), edge);
   bank.force = fade(kValleyM, b.valley);
   bank.levee = fade(kLeveeM, b.taper);
   bank.dry = hn::And(b.near, hn::Gt(b.edge, hn::Zero(d)));

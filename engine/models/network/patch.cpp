@@ -29,6 +29,18 @@ float bent_m(const Curve& c, float t) {
   return o * o * c.height_m[0] + 2 * o * t * c.height_m[1] + t * t * c.height_m[2];
 }
 
+// Lowers water at a place, in metres from the node of a wider channel, as the valley of that
+// channel lowers the ground there.
+float lowered_m(const Curve& wide, float x, float z, float water_m) {
+  const NearestPlace near = nearest_place(wide, x, z);
+  const float width = width_m(wide, near.t), edge = std::max(near.distance_m - width / 2, 0.0F);
+  const float away = std::min(edge / bank_m(width), 1.0F);
+  const float share = 1 - away * away * (3 - 2 * away);
+  const float bank =
+      level_m(wide, near.t) + kBankRiseM * std::min(edge, 1.0F) + kValleySlope * edge;
+  return water_m + share * std::min(bank - water_m, 0.0F);
+}
+
 // Adds the spots and curves of nodes to a patch.
 class Builder {
  public:
@@ -47,6 +59,7 @@ class Builder {
         add_curves(i, j);
       }
     }
+    lower_into_valleys();
     join_arms();
     keep_curves();
     fill_bins();
@@ -108,6 +121,16 @@ class Builder {
     patch_.spots.push_back(s);
   }
 
+  // A place where water has one height for all curves that meet there. Wider channels whose valley
+  // it lies in lower it, at most to `lowest_m`: no water rises then, for a joint downstream was at
+  // most as high before.
+  struct Joint {
+    std::int32_t x2 = 0, z2 = 0;  // half units from the patch's origin
+    float width_m = 0, lowest_m = 1e30F;
+  };
+  struct Joints {
+    Joint begin, node, end;
+  };
   // The water in the middle of the edge from a node to its receiver. It is level with a lake or the
   // sea from there on.
   float middle_m(const Node& up, const Node& down) const {
@@ -116,11 +139,15 @@ class Builder {
   void add_curves(std::int64_t i, std::int64_t j) {
     const Node& v = n_.at(i, j);
     Outlet out;
+    Joints joints;
+    joints.node = joint(v, v, v);
     if (v.receiver != kSink) {
       const Node& down = n_.beside(i, j, v.receiver);
       out = {half(v, down), middle_m(v, down)};
+      joints.end = joint(v, v, down);
     } else {
       out.height_m = water_m(v);
+      joints.end = joints.node;
     }
     const int widest = largest_inflow(i, j, channel_);
     const auto begin = static_cast<std::uint32_t>(curves_.size());
@@ -132,6 +159,8 @@ class Builder {
       c.width0_m = width_m(up.area);
       c.width1_m = width_m(std::max(up.area, below));
       c.discharge_m3_s = static_cast<float>(discharge_m3_s(scale_.km2(up.area)));
+      joints.begin = joint(up, up, v);
+      joints_.push_back(joints);
       add(c, v, Path{half(v, up), {}, out.place, middle_m(up, v), water_m(v), out.height_m});
     }
     if (curves_.size() > begin + 1)
@@ -146,14 +175,28 @@ class Builder {
     const int above = largest_inflow(i, j, 1);
     Path path{{}, {out.place[0] / 2, out.place[1] / 2}, out.place, water_m(v), 0, out.height_m};
     path.control_m = 0.5F * (path.from_m + path.to_m);
+    joints.begin = joints.node;
     if (above >= 0) {
       const Node& up = n_.beside(i, j, above);
+      joints.begin = joint(v, up, v);
       path.from = half(v, up);
       path.control = {};
       path.from_m = middle_m(up, v);
       path.control_m = water_m(v);
     }
+    joints_.push_back(joints);
     add(c, v, path);
+  }
+  // The joint of the channel of `of` that lies between two nodes, or at one.
+  Joint joint(const Node& of, const Node& from, const Node& to) const {
+    Joint joint;
+    joint.x2 = from_origin_x(from) + from_origin_x(to);
+    joint.z2 = from_origin_z(from) + from_origin_z(to);
+    if (from.kind == Kind::kLand && to.kind == Kind::kLand) {
+      joint.width_m = width_m(of.area);
+      joint.lowest_m = water_m(to);
+    }
+    return joint;
   }
   static bool flows_in(const Node& up, int direction, std::uint32_t area) {
     return up.receiver == opposite(direction) && up.area >= area;
@@ -231,6 +274,36 @@ class Builder {
     curves_.push_back(c);
   }
 
+  float lowered_m(const Joint& joint, float water_m) const {
+    if (joint.lowest_m >= water_m) return water_m;
+    float lowest_m = water_m;
+    for (const Curve& wide : curves_) {
+      if (wide.width0_m < kWider * joint.width_m) continue;
+      const auto metres = [&](std::int32_t place2, std::int32_t node) {
+        return static_cast<float>(place2 - 2 * node) * (0.5F * patch_.unit_m);
+      };
+      const float x = metres(joint.x2, wide.x), z = metres(joint.z2, wide.z);
+      if (std::abs(x) > wide.reach_m || std::abs(z) > wide.reach_m) continue;
+      lowest_m = std::min(lowest_m, network::lowered_m(wide, x, z, water_m));
+    }
+    return std::max(lowest_m, joint.lowest_m);
+  }
+  // Lowers the water of channels as the valleys of wider ones lower the ground under them.
+  void lower_into_valleys() {
+    std::vector<std::array<float, 3>> lowered(curves_.size());
+    for (std::size_t k = 0; k < curves_.size(); ++k) {
+      const auto& [from_m, middle_m, to_m] = curves_[k].height_m;
+      Joints joints = joints_[k];
+      const float end_m = lowered_m(joints.end, to_m);
+      if (joints.node.lowest_m <= middle_m) joints.node.lowest_m = end_m;
+      const float node_m = lowered_m(joints.node, middle_m);
+      if (curves_[k].head) joints.begin.lowest_m = std::min(joints.begin.lowest_m, node_m);
+      lowered[k] = {lowered_m(joints.begin, from_m), node_m, end_m};
+    }
+    for (std::size_t k = 0; k < curves_.size(); ++k)
+      curves_[k].height_m = lowered[k];
+  }
+
   // The nearest place of curve c to point s of curve q.
   NearestPlace nearest(const Curve& c, const Curve& q, std::size_t s) const {
     const auto offset = [&](std::int32_t to, std::int32_t from) {
@@ -304,7 +377,8 @@ class Builder {
   Patch& patch_;
   std::uint32_t channel_;
   double max_m_;
-  std::vector<Curve> curves_;  // of all nodes
+  std::vector<Curve> curves_;   // of all nodes
+  std::vector<Joints> joints_;  // of the curves
   struct Arms {
     std::uint32_t begin, end;
   };

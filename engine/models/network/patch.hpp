@@ -177,6 +177,13 @@ constexpr float kBedM = 0.25F, kBedWidths = 0.07F;
 constexpr float channel_depth_m(float width_m) {
   return kBedM + kBedWidths * width_m;
 }
+// Speed in the middle of a channel, in m/s, at most kFastestM_S. Depth and speed are parabolas
+// across, so it is 1.25 times the discharge over the cross-section.
+constexpr float kMiddleSpeed = 1.25F / (2.0F / 3.0F), kFastestM_S = 6;
+constexpr float middle_speed_m_s(float discharge_m3_s, float width_m) {
+  return std::min(kMiddleSpeed * discharge_m3_s / (width_m * channel_depth_m(width_m)),
+                  kFastestM_S);
+}
 // Height and width of the water of a curve, in metres; t: its parameter, 0 … 1.
 float level_m(const Curve& c, float t);
 constexpr float width_m(const Curve& c, float t) {
@@ -189,6 +196,8 @@ struct NearestPlace {
 NearestPlace nearest_place(const Curve& c, float x_m, float z_m);
 // Width of the ground beside a channel that the channel lowers, and that it may raise.
 constexpr float kValleyM = 36, kLeveeM = 12, kBankWidths = 1.5F;
+// Beside the water's edge the lowered ground rises by the bank within a metre, and by this slope.
+constexpr float kBankRiseM = 0.3F, kValleySlope = 0.12F;
 constexpr float bank_m(float width_m) {
   return kValleyM + kBankWidths * width_m;
 }

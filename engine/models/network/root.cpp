@@ -37,7 +37,7 @@ Scale::Scale(const RiverSettings& s, const RiverFrame& f) : settings(s), frame(f
   size = static_cast<double>(spacing0) * unit_m / 8192;
   channel_area = static_cast<std::uint32_t>(std::clamp(s.channel_km2 / node_km2 + 0.5, 1.0, 4e9));
   for (std::size_t k = 0; k < keys.size(); ++k)
-    keys[k] = core::combine(core::combine(core::mix64(RiverSettings::kEdition), s.seed), k);
+    keys[k] = core::combine(core::combine(core::mix64(RiverSettings::kRandomEdition), s.seed), k);
   // Slopes depend on the length of the edge, whatever level has it. Edges of 8192 m come first.
   constexpr std::array<double, 12> kRise{.009, .011, .019, .035, .062, .088,
                                          .093, .066, .042, .032, .023, .018};

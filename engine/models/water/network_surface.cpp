@@ -152,7 +152,6 @@ class NetworkSurface {
     double width_m = double{curve.width0_m} + t * double{curve.width1_m - curve.width0_m};
     if (curve.head) width_m *= std::min(0.3 + t, 1.0);
     const double depth_m = double{network::channel_depth_m(static_cast<float>(width_m))};
-    const double speed = double{curve.discharge_m3_s} / std::max(0.67 * width_m * depth_m, 0.05);
     const glm::dvec2 middle_m = origin_m + glm::dvec2(double{curve.px[i]}, double{curve.pz[i]});
     const double fall = (level_m(curve, from) - level_m(curve, next)) / length_m;
     return {.middle_m = middle_m,
@@ -161,7 +160,8 @@ class NetworkSurface {
             .edge_m = node_.level == 0 ? 2 : 0.1 * node_.cell_m(),
             .surface_m = surface_m(curve, i, middle_m),
             .middle_depth_m = depth_m,
-            .middle_m_s = std::min(speed, 6.0),
+            .middle_m_s = double{network::middle_speed_m_s(curve.discharge_m3_s,
+                                                           static_cast<float>(width_m))},
             .fall = fall,
             // A thin stream is a white line of little width, not a fall.
             .foam = std::clamp((width_m - 0.5) / 4, 0.15, 1.0) * foam_of_fall(fall)};

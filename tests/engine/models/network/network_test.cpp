@@ -493,7 +493,7 @@ TEST(RiverNetwork, KeepsItsBits) {
             evaluate(*network, range(place[0], 5, 33), range(place[1], 5, 33), {level}).hash());
     }
   }
-  EXPECT_EQ(hash, 0xE41D35C3EEBFA84CULL);
+  EXPECT_EQ(hash, 0xDEFA9EEE1B0F8564ULL);
 }
 
 TEST(RiverNetwork, AtTheEndsOfItsSettingsHasFiniteGround) {
@@ -544,8 +544,8 @@ TEST(RiverNetwork, ChannelsHaveTheDischargeOfTheirDrainageArea) {
     if (std::abs(channel->width_m - double{width_m}) > 1e-3) continue;  // another arm is nearer
     ASSERT_EQ(channel->discharge_m3_s, double{c.discharge_m3_s});
     // The speed is that of the discharge through the cross-section.
-    const double speed = std::min(
-        2.25 * channel->discharge_m3_s / double{width_m * network::channel_depth_m(width_m)}, 6.0);
+    const double cross_section_m2 = 2.0 / 3 * double{width_m * network::channel_depth_m(width_m)};
+    const double speed = std::min(1.25 * channel->discharge_m3_s / cross_section_m2, 6.0);
     const double flow = std::hypot(double{water.flow_m_s.x}, double{water.flow_m_s.y});
     if (std::abs(flow - speed) < 0.02 * speed) ++alone;
     least = std::min(least, c.discharge_m3_s);
@@ -554,6 +554,60 @@ TEST(RiverNetwork, ChannelsHaveTheDischargeOfTheirDrainageArea) {
   EXPECT_GT(alone, 60U);
   EXPECT_GE(double{least}, 0.97 * network::discharge_m3_s(network->settings().channel_km2));
   EXPECT_GT(most, 20 * least);
+}
+
+// The ground of a patch, `x_m` and `z_m` from the node of a curve.
+float ground_beside(const network::Patch& patch, const network::Curve& c, float x_m, float z_m) {
+  const std::int32_t x = c.x + static_cast<std::int32_t>(x_m / patch.unit_m);
+  const std::int32_t z = c.z + static_cast<std::int32_t>(z_m / patch.unit_m);
+  const network::Samples at{{&x, 1}, {&z, 1}, true};
+  float base = 0, water = 0;
+  network::base_rows(patch, at, {.height_m = &base, .stride = 1});
+  float height = base;
+  network::carve_rows(
+      patch, at,
+      {.base_m = &base, .base_stride = 1, .height_m = &height, .water_m = &water, .stride = 1});
+  return height;
+}
+// True if a place, from the node of a curve, lies in the valley of a channel twice as wide.
+bool is_in_valley(const network::Patch& patch, const network::Curve& c, float x_m, float z_m) {
+  return std::ranges::any_of(patch.curves, [&](const network::Curve& wide) {
+    if (wide.width0_m < 2 * c.width1_m) return false;
+    const network::NearestPlace near =
+        network::nearest_place(wide, static_cast<float>(c.x - wide.x) * patch.unit_m + x_m,
+                               static_cast<float>(c.z - wide.z) * patch.unit_m + z_m);
+    const float width_m = network::width_m(wide, near.t);
+    return near.distance_m - width_m / 2 < network::bank_m(width_m);
+  });
+}
+
+// Streams run down the sides of the valleys of wider rivers, not over them on dams.
+TEST(RiverNetwork, StreamsLieInTheValleysOfWiderRivers) {
+  constexpr std::size_t kMiddle = network::Curve::kChords / 2;
+  constexpr float kBesideM = 16, kDamM = 4;  // beyond levees
+  std::size_t streams = 0, dams = 0;
+  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+    const auto network = network_of({.seed = seed, .mountain_share = 0.8});
+    for (const Place& place : places(30, 300'000)) {
+      const auto patch = network->patch(network->tile_of(place[0], place[1], {}));
+      for (const network::Curve& c : patch->curves) {
+        const bool falls = c.height_m[0] - c.height_m[2] > 1;  // not in a lake
+        if (!falls || c.chords < network::Curve::kChords) continue;
+        const float x_m = c.px[kMiddle], z_m = c.pz[kMiddle];
+        if (!is_in_valley(*patch, c, x_m, z_m)) continue;
+        const float ex = c.px[kMiddle + 1] - c.px[kMiddle - 1];
+        const float ez = c.pz[kMiddle + 1] - c.pz[kMiddle - 1];
+        const float aside = kBesideM / std::sqrt(ex * ex + ez * ez);
+        const float ground_m =
+            std::max(ground_beside(*patch, c, x_m - aside * ez, z_m + aside * ex),
+                     ground_beside(*patch, c, x_m + aside * ez, z_m - aside * ex));
+        ++streams;
+        dams += ground_m < network::level_m(c, 0.5F) - kDamM ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(streams, 200U);
+  EXPECT_LT(50 * dams, streams);
 }
 
 TEST(RiverNetwork, LakesHaveNoChannel) {
