@@ -234,8 +234,9 @@ class Call {
     return hn::Mul(hn::Mul(smooth(clear), dry), land);
   }
 
-  // One vector of samples. Valleys are lowered first, then banks are raised to the water, so that
-  // no valley drains another channel; then all beds are cut, so that no bank dams another bed.
+  // One vector of samples. Valleys are lowered first, then banks and the ground under water are
+  // raised to the water, so that no valley drains another channel; then all beds are cut, so that
+  // no bank dams another bed.
   void carve_vector(std::size_t r, std::size_t i, const CarvedRows& out) {
     const FloatTag d;
     const IntTag di;
@@ -274,7 +275,7 @@ class Call {
         const Bank bank = bank_of(b);
         const Float raised =
             hn::Add(low, hn::Mul(hn::Sub(bank.height, low), hn::Mul(bank.levee, bank.levee)));
-        high = hn::IfThenElse(bank.dry, hn::Max(high, raised), high);
+        high = hn::IfThenElse(b.near, hn::Max(high, raised), high);
       }
       high = hn::IfThenElse(open, ground, high);
     }
@@ -286,7 +287,9 @@ class Call {
     add_still(lake_water, lake.level, lake_body, w);
     const auto alone = hn::Eq(w.weight, zero);
     const auto flooded = hn::And(alone, hn::Lt(ground, sea_level));
-    add_still(hn::Or(sea, flooded), sea_level, hn::Set(di, std::int32_t{kSeaBody}), w);
+    const Int sea_body = hn::Set(di, std::int32_t{kSeaBody});
+    add_still(hn::Or(sea, flooded), sea_level, sea_body, w);
+    w.body = hn::IfThenElse(hn::RebindMask(di, sea), sea_body, w.body);  // also in a river's mouth
     write_water(w, ground, at, n, out);
   }
 

@@ -493,7 +493,7 @@ TEST(RiverNetwork, KeepsItsBits) {
             evaluate(*network, range(place[0], 5, 33), range(place[1], 5, 33), {level}).hash());
     }
   }
-  EXPECT_EQ(hash, 0xDEFA9EEE1B0F8564ULL);
+  EXPECT_EQ(hash, 0xE48142654161E0CCULL);
 }
 
 TEST(RiverNetwork, AtTheEndsOfItsSettingsHasFiniteGround) {
@@ -608,6 +608,33 @@ TEST(RiverNetwork, StreamsLieInTheValleysOfWiderRivers) {
   }
   EXPECT_GT(streams, 200U);
   EXPECT_LT(50 * dams, streams);
+}
+
+// Beds are as deep as their channels are wide, also in the valleys of wider rivers.
+TEST(RiverNetwork, ChannelsHaveTheDepthOfTheirWidth) {
+  constexpr float kDeeperM = 0.3F;  // as where channels meet
+  std::size_t channels = 0, deep = 0;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const auto network = network_of({.seed = seed, .mountain_share = 0.8});
+    for (const Place& place : places(15, 300'000)) {
+      const auto patch = network->patch(network->tile_of(place[0], place[1], {}));
+      for (const network::Curve& c : patch->curves) {
+        for (std::size_t s = 1; s < c.chords && !c.head; ++s) {
+          const auto cells = [](std::int64_t node, float m) {
+            return static_cast<double>(node) / kUnitsPerCell + double{m};
+          };
+          const auto found = network->inland_water_at(
+              position_of(cells(patch->x + c.x, c.px[s]), cells(patch->z + c.z, c.pz[s])));
+          if (!found || !found->channel) continue;
+          const auto width_m = static_cast<float>(found->channel->width_m);
+          ++channels;
+          deep += found->water.depth_m > network::channel_depth_m(width_m) + kDeeperM ? 1 : 0;
+        }
+      }
+    }
+  }
+  EXPECT_GT(channels, 10'000U);
+  EXPECT_LT(50 * deep, channels);
 }
 
 TEST(RiverNetwork, LakesHaveNoChannel) {
