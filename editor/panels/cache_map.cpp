@@ -73,7 +73,7 @@ QString rivers_text() {
   };
   QString text = "<br>";
   for (int px = 1; px <= kMaxRiverPx; ++px)
-    text += line(river_colour(px), tr("%1&nbsp;m³/s").arg(river_discharge_m3_s(px)));
+    text += line(river_colour(px), tr("%1&nbsp;m³/s").arg(usual_discharge_m3_s(px)));
   return text + line(kShoreColour, tr("shore")) + line(kDivideColour, tr("divide"));
 }
 

@@ -25,10 +25,10 @@ QString discharge_text(double m3_s) {
 }  // namespace
 
 QString water_text(const WaterFacts& water) {
-  const QString text = tr("%1: surface %2 m, %3 m deep")
-                           .arg(name_of(water.kind))
-                           .arg(water.surface_m, 0, 'f', 1)
-                           .arg(water.depth_m, 0, 'f', 1);
+  QString text = tr("%1: surface %2 m, %3 m deep")
+                     .arg(name_of(water.kind))
+                     .arg(water.surface_m, 0, 'f', 1)
+                     .arg(water.depth_m, 0, 'f', 1);
   if (water.kind != WaterKind::kRiver) return text;
   return text + tr(", %1 m/s, %2 m³/s")
                     .arg(water.speed_m_s, 0, 'f', 1)

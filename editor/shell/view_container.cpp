@@ -1,5 +1,6 @@
 #include "editor/shell/view_container.hpp"
 
+#include <QCoreApplication>
 #include <QKeyEvent>
 #include <QWidget>
 

@@ -48,7 +48,7 @@ class GroundRays {
   void note_world() { ground_.note_world(); }
 
  private:
-  KeptGround ground_;
+  KeptGround ground_{std::size_t{32} << 20};
 };
 
 // The same model, or the same point of the ground, in the present world; nullopt if it is gone.

@@ -312,7 +312,7 @@ glm::vec3 river_colour(int width_px) {
   return part < 1 ? glm::mix(brook, stream, part) : glm::mix(stream, river, part - 1);
 }
 
-double river_discharge_m3_s(int width_px) {
+double usual_discharge_m3_s(int width_px) {
   return std::pow(10.0, width_px - 1 - kBrookDecades);
 }
 

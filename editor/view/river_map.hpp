@@ -41,8 +41,8 @@ inline constexpr int kMaxRiverPx = 5;
 int river_width_px(double discharge_m3_s);
 // The colour, as on screen, of channels of a width from 1 to kMaxRiverPx.
 glm::vec3 river_colour(int width_px);
-// The discharge in m³/s that stands for a width.
-double river_discharge_m3_s(int width_px);
+// The discharge in m³/s that stands for a width in legends.
+double usual_discharge_m3_s(int width_px);
 inline constexpr glm::vec3 kShoreColour{0.62F, 0.95F, 1.0F}, kDivideColour{0.95F, 0.55F, 0.25F};
 
 }  // namespace psygen::editor

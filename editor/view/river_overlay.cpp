@@ -25,7 +25,7 @@ constexpr double kSeenSquares = 3;
 }  // namespace
 
 std::shared_ptr<const models::RiverNetwork> network_of(const world::World& world) {
-  const auto layer = world.layer();
+  const auto& layer = world.layer();
   return layer ? layer->ground.network : nullptr;
 }
 

@@ -17,9 +17,10 @@ namespace psygen::editor {
 // The network of a world; null: it has none.
 std::shared_ptr<const models::RiverNetwork> network_of(const world::World& world);
 
-// Appends the lines of a map's shores and channels relative to a camera, those of the far squares
-// last, but not those farther than three halves of the finest square. Stops after kMaxRiverLines,
-// which leave room for the grid and the tools. `pixel`: the size of a pixel over its distance.
+// Appends the lines of a map's shores and then of its channels relative to a camera, each the far
+// squares last, but not those farther than three halves of the finest square. Stops after
+// kMaxRiverLines, which leave room for the grid and the tools. `pixel`: the size of a pixel over
+// its distance.
 inline constexpr std::size_t kMaxRiverLines = 48'000;
 void add_river_lines(const RiverMap& map, const core::WorldPosition& eye, double block_m,
                      double pixel, std::vector<render::Line>& lines);
@@ -44,7 +45,7 @@ class RiverOverlay {
   bool is_busy() const { return next_.valid(); }
 
  private:
-  // What a map is made of, except for the place.
+  // The network and the size of the world of a map.
   struct Source {
     std::uint64_t network = 0;  // its identity
     std::int64_t blocks_x = 0, blocks_z = 0;

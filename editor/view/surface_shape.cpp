@@ -39,7 +39,7 @@ bool SurfaceDifference::at(core::BlockCoord block) {
   return last_->second;
 }
 
-BareGround::BareGround(const world::World& of)
+BareGround::BareGround(const world::World& of, std::size_t cache_bytes)
     : shape(of),
       world([&] {
         world::World bare = of;
@@ -48,12 +48,12 @@ BareGround::BareGround(const world::World& of)
         return bare;
       }()),
       registry(models::make_standard_registry()),
-      queries(world, registry) {}
+      queries(world, registry, cache_bytes) {}
 
 const std::shared_ptr<BareGround>& KeptGround::of(const world::World& world) {
   const bool is_new = std::exchange(world_is_new_, false);
   if (!ground_ || (is_new && !(ground_->shape == SurfaceShape(world))))
-    ground_ = std::make_shared<BareGround>(world);
+    ground_ = std::make_shared<BareGround>(world, cache_bytes_);
   return ground_;
 }
 

@@ -55,7 +55,8 @@ class SurfaceDifference {
 // A copy of a world's ground and water with its own queries. It has no models and refers to nothing
 // of the scene, so another thread may use it.
 struct BareGround {
-  explicit BareGround(const world::World& of);
+  // `cache_bytes`: of its queries.
+  BareGround(const world::World& of, std::size_t cache_bytes);
   BareGround(const BareGround&) = delete;
   BareGround& operator=(const BareGround&) = delete;
 
@@ -66,14 +67,17 @@ struct BareGround {
 };
 
 // Keeps a copy of the ground of the view's world, with its cached heights, while it is unchanged.
+// Main thread only.
 class KeptGround {
  public:
+  explicit KeptGround(std::size_t cache_bytes) : cache_bytes_(cache_bytes) {}
   // To be called after a change of the world.
   void note_world() { world_is_new_ = true; }
   // The ground of the world; another copy if the surface has changed before the last note_world().
   const std::shared_ptr<BareGround>& of(const world::World& world);
 
  private:
+  std::size_t cache_bytes_;
   std::shared_ptr<BareGround> ground_;
   bool world_is_new_ = false;
 };

@@ -50,7 +50,7 @@ class WaterProbe {
   bool is_busy() const { return next_.valid(); }
 
  private:
-  KeptGround ground_;  // used by the other thread alone while next_ is valid
+  KeptGround ground_{std::size_t{16} << 20};  // the other thread has a share of it
   std::future<std::optional<WaterFacts>> next_;
   // Of the last question:
   std::shared_ptr<const BareGround> asked_ground_;

@@ -130,9 +130,9 @@ TEST(RiverLook, WiderLinesAreLargerRivers) {
 // So a legend with these discharges shows the look of each channel.
 TEST(RiverLook, EachWidthHasItsDischargeAndColour) {
   for (int px = 1; px <= kMaxRiverPx; ++px) {
-    EXPECT_EQ(river_width_px(river_discharge_m3_s(px)), px);
-    EXPECT_EQ(river_width_px(3 * river_discharge_m3_s(px)), px);
-    EXPECT_EQ(river_width_px(river_discharge_m3_s(px) / 3), px);
+    EXPECT_EQ(river_width_px(usual_discharge_m3_s(px)), px);
+    EXPECT_EQ(river_width_px(3 * usual_discharge_m3_s(px)), px);
+    EXPECT_EQ(river_width_px(usual_discharge_m3_s(px) / 3), px);
     for (int other = 1; other < px; ++other)
       EXPECT_GT(glm::distance(river_colour(px), river_colour(other)), 0.2F) << px << ' ' << other;
   }

@@ -52,7 +52,7 @@ TEST(SurfaceShape, DependsOnTheBordersOfTheWorld) {
 TEST(KeptGround, FollowsTheSurfaceOfTheWorldOnceItIsToldOfAChange) {
   const world::World world = world_of(kWorld);
   const world::World smaller = world_of(replaced(kWorld, "blocks = [8, 4]", "blocks = [2, 2]"));
-  KeptGround kept;
+  KeptGround kept(std::size_t{16} << 20);
   const std::shared_ptr<BareGround> first = kept.of(world);
   EXPECT_TRUE(first->world.scatter.empty());
   EXPECT_EQ(kept.of(smaller), first) << "not told yet";

@@ -83,7 +83,7 @@ TEST_F(RiversInView, TheMapDrawsChannelsInTheColoursOfItsLegend) {
   const auto rivers = std::make_shared<RiverMap>();
   for (int px = 1; px <= kMaxRiverPx; ++px) {
     for (const double factor : {0.4, 2.5}) {
-      const double discharge_m3_s = factor * river_discharge_m3_s(px);
+      const double discharge_m3_s = factor * usual_discharge_m3_s(px);
       // Along the middle of a row of pixels.
       const float z_m = 10 * static_cast<float>(rivers->channels.size()) - 54.75F;
       rivers->channels.push_back({{{-90, 0, z_m}, {90, 0, z_m}},
