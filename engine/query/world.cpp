@@ -32,6 +32,17 @@ auto rank(const NearbyModel& m) {
   return std::tuple(m.distance_m, m.block, m.index);
 }
 
+constexpr double kSteepestWater = 2;  // slope of falls
+
+// Brings `low` and `high` together; is_low(low) and !is_low(high) stay true.
+template <class IsLow>
+void halve_step(double& low, double& high, const IsLow& is_low) {
+  for (int i = 0; i < 40; ++i) {
+    const double middle = (low + high) / 2;
+    (is_low(middle) ? low : high) = middle;
+  }
+}
+
 }  // namespace
 
 core::Result<core::WorldPosition> checked(const core::WorldPosition& at, double block_size_m) {
@@ -95,6 +106,8 @@ core::Result<world::WaterPoint> World::water(const core::WorldPosition& position
 
 core::Result<std::optional<double>> World::river_discharge_m3_s(
     const core::WorldPosition& position) {
+  const core::RoundToNearest rounding;
+  follow_world();
   const auto at = on_ground(position);
   if (!at) return tl::unexpected(at.error());
   const auto discharge = world::river_discharge_m3_s(*world_, *at);
@@ -300,16 +313,6 @@ bool World::meet_water(const Course& course, double t, Hit& hit) {
   return true;
 }
 
-// Halves a step from `low` to `high` until it is short. `is_low(t)` tells whether a place belongs
-// to its start.
-template <class IsLow>
-void halve_step(double& low, double& high, const IsLow& is_low) {
-  for (int i = 0; i < 40; ++i) {
-    const double middle = (low + high) / 2;
-    (is_low(middle) ? low : high) = middle;
-  }
-}
-
 // The sea is a plane. Blocks with rivers and lakes are searched in steps, and the step with the
 // surface is halved. A step over the border of the water ends, or begins, at the border.
 void World::cast_water(const Course& course, Hit& hit) {
@@ -323,6 +326,11 @@ void World::cast_water(const Course& course, Hit& hit) {
   if (!layer) return;
   const PlaneLine plane = course.plane();
   const double step_m = world_->cell_m() / 2;
+  // A ray that is farther from the water meets none within a step.
+  const double near_m = step_m * (kSteepestWater + std::abs(course.direction.y));
+  const auto may_meet = [&](const std::optional<double>& height_m) {
+    return height_m && std::abs(*height_m) <= near_m;
+  };
   std::int64_t left = kMaxBlocks;
   // Metres of the ray above the water that is not the sea.
   const auto above_m = [&](double t) -> std::optional<double> {
@@ -349,12 +357,12 @@ void World::cast_water(const Course& course, Hit& hit) {
             const auto after = above_m(next);
             double low = t, high = next;
             auto above_low = before, above_high = after;
-            if (before && !after) {
+            if (!after && may_meet(before)) {
               double dry = next;
               high = t;
               halve_step(high, dry, [&](double at) { return above_m(at).has_value(); });
               above_high = above_m(high);
-            } else if (!before && after) {
+            } else if (!before && may_meet(after)) {
               double dry = t;
               low = next;
               halve_step(dry, low, [&](double at) { return !above_m(at); });
