@@ -186,8 +186,8 @@ bool is_usable(const world::Sky& sky) {
          std::ranges::all_of(colours, [](const glm::vec3& c) { return core::is_finite(c); });
 }
 
-// A world with the ground of the last one keeps its patches and heights: they are functions of what
-// names them, and take seconds to make.
+// A world takes over the heights that the last one has kept, and patches of the same network: the
+// keys name all that they depend on (terrain/ground.cpp), and they take seconds to make.
 void keep_caches(const world::World& before, world::World& world) {
   if (!before.shaped.layer || !world.shaped.layer) return;
   const models::GroundStack& known = before.shaped.layer->ground;
@@ -225,7 +225,7 @@ core::Result<PreparedWorld> prepare_world(world::World world, models::Registry r
     world::place_models(facts.world, facts.registry, block, wanted, prepared.models[block]);
   }
   if (!facts.world.shaped.network) return prepared;
-  // So that the main thread finds the patches of its nodes.
+  // Makes the patches of the water of coarse nodes, which the main thread will read.
   for (const visibility::NodeCoord& node : snapshot.nodes) {
     if (auto ok = core::check_cancelled(); !ok) return tl::unexpected(ok.error());
     static_cast<void>(world::water_parameters(facts.world, node.coord, node.level));

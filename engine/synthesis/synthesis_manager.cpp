@@ -8,6 +8,7 @@
 #include <map>
 #include <utility>
 
+#include "engine/core/assert.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/core/headroom.hpp"
 #include "engine/core/log.hpp"
@@ -298,11 +299,12 @@ bool SynthesisManager::make_next_here() {
   Request request;
   std::uint64_t retries = 0;
   if (!workshop_->board.claim(*own_reader_, request, retries)) return false;
-  ++reclaimed_;  // no modeler makes it
+  ++reclaimed_;  // from the modelers
   if ((*workshop_->registry)[request.key.model].may_run_on_main_thread()) {
     execute_here(request);
     return true;
   }
+  PSYGEN_ASSERT(unclaimed_.empty(), "earlier plans are reclaimed before a wait");
   close_plan();
   std::vector<Request> plan{std::move(request)};
   std::ranges::move(std::exchange(unclaimed_, {}), std::back_inserter(plan));

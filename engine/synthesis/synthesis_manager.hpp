@@ -58,7 +58,8 @@ struct ModelerStats {
 struct SynthesisStats {
   std::uint64_t models = 0, failed = 0, triangles = 0, bytes = 0;
   double cpu_seconds = 0;  // of all modelers
-  // `reclaimed` includes requests that remote modelers returned or were abandoned with.
+  // `reclaimed` includes requests that remote modelers returned or were abandoned with, and those
+  // that a waiting thread took to make them.
   std::uint64_t published = 0, reclaimed = 0, given_up = 0;
   std::vector<ModelerStats> modelers;  // including hung ones
 };

@@ -26,7 +26,7 @@ class GroundPatchType final : public TaskType {
   std::span<const ParameterSpec> parameters() const override { return kSchema; }
   // The coarsest patches need more of the root.
   double steps(const Parameters& p, int) const override { return p.integer(kLevel) < 3 ? 3 : 1; }
-  double step_seconds() const override { return 2e-3; }
+  double step_seconds() const override { return 3e-3; }
   bool may_run_on_main_thread() const override { return true; }
 
  private:
@@ -53,8 +53,10 @@ std::vector<network::TileKey> ground_patches(const Parameters& terrain, std::int
     return LatticeSpan{shape.world_of(block, -beyond),
                        shape.world_of(block, shape.size - 1 + beyond)};
   };
-  const auto wider = [beyond_cells](LatticeSpan span) {
-    return LatticeSpan{span.first - beyond_cells, span.last + beyond_cells};
+  constexpr std::int64_t kMaxBeyondCells = 512;
+  const std::int64_t more = std::min(beyond_cells, kMaxBeyondCells);
+  const auto wider = [more](LatticeSpan span) {
+    return LatticeSpan{span.first - more, span.last + more};
   };
   const LatticeSpan along_x = along(x), along_z = along(z);
   shape.each_patch(wider(along_x), wider(along_z), shape.detail(), add);

@@ -11,8 +11,8 @@
 namespace psygen::models {
 
 // The patches that the ground of a node reads: its meshes, their light, its water, the places of
-// models on it, and heights up to `beyond_cells` cells of node level 0 beyond its border. Each
-// once; empty without a network. About 1 µs.
+// models on it, and heights up to `beyond_cells` cells of node level 0 beyond its border, at most
+// 512: more would be too many patches. Each once; empty without a network. About 1 µs.
 std::vector<network::TileKey> ground_patches(const Parameters& terrain,
                                              std::int64_t beyond_cells = 0);
 

@@ -23,7 +23,7 @@ const models::RiverNetwork* network_of(const world::World& world) {
   return world.layer() != nullptr ? world.layer()->ground.network.get() : nullptr;
 }
 
-// How far beyond a block its models look for water, in cells.
+// The largest distance at which models look for water, in cells.
 std::int64_t near_water_cells(const world::World& world) {
   double farthest_m = 0;
   for (const world::Scatter& scatter : world.scatter) {
@@ -56,17 +56,18 @@ void GroundPatches::begin(const WorldFacts& facts) {
   network_ = identity;
   near_water_cells_ = near_water_cells(facts.world);
   if (patches_.size() > kMaxKnown) forget_oldest();
-  ++tick_;
+  tick_begin_ = asks_;
 }
 
 // Patches of the last tick stay, however many they are: their nodes still wait for others.
 void GroundPatches::forget_oldest() {
   std::vector<std::uint64_t> asked;
+  asked.reserve(patches_.size());
   for (const auto& [tile, patch] : patches_)
     asked.push_back(patch.asked);
   const auto oldest = asked.begin() + static_cast<std::ptrdiff_t>(asked.size() - kMaxKnown);
   std::ranges::nth_element(asked, oldest);
-  const std::uint64_t kept_from = std::min(*oldest, tick_);
+  const std::uint64_t kept_from = std::min(*oldest, tick_begin_ + 1);
   std::erase_if(patches_, [&](const auto& known) { return known.second.asked < kept_from; });
 }
 
@@ -77,7 +78,8 @@ bool GroundPatches::ready(const WorldFacts& facts, const Daylight& daylight,
   for (const TileKey& tile : models::ground_patches(lit_ground(facts, daylight, at),
                                                     at.level == 0 ? near_water_cells_ : 0)) {
     Patch& patch = patches_[tile];
-    const bool asked = std::exchange(patch.asked, tick_) == tick_;
+    const bool asked = patch.asked > tick_begin_;
+    patch.asked = ++asks_;
     if (patch.made) continue;
     all = false;
     if (!asked) wanted_.push_back(tile);
@@ -93,7 +95,9 @@ void GroundPatches::want_all(const WorldFacts& facts, synthesis::MeshSupply& sup
     const synthesis::MeshKey key = key_of(tile, p, facts);
     // A change of the world may have taken the finished request.
     const synthesis::MeshHandle handle = supply.find(key);
-    if (supply.ready(handle) != nullptr) {
+    const synthesis::MeshRecord* const record = supply.get(handle);
+    if (record != nullptr && (record->state == synthesis::MeshState::kReady ||
+                              record->state == synthesis::MeshState::kFailed)) {
       patches_[tile].made = true;
       supply.forget(handle);
       continue;

@@ -1,7 +1,7 @@
 // The patches of a river network that modelers have made (models/terrain/ground_patch.hpp). A node
 // waits for those that its ground reads, so that the main thread makes none. What is known here
 // decides, not the network's store: what a store drops depends on threads, and virtual frames must
-// not. Fewer are known than a store keeps, so that it has those that are. Main thread only.
+// not. It knows fewer than a store keeps, unless a tick needs more. Main thread only.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +22,8 @@ class GroundPatches {
   // About half of what a network's store keeps (models/network/store.hpp).
   static constexpr std::size_t kMaxKnown = 256;
 
-  // Begins a tick of a world: nothing is wanted, patches of another network are forgotten, and of
-  // too many those that no node has asked for lately.
+  // Begins a tick of a world: wants nothing yet, forgets patches of another network, and keeps
+  // kMaxKnown patches or those of the last tick, the last ones that nodes have asked for.
   void begin(const WorldFacts& facts);
   // True if all patches of a node are made, or if the world has no network; wants the others.
   bool ready(const WorldFacts& facts, const Daylight& daylight, const visibility::NodeCoord& at);
@@ -38,14 +38,14 @@ class GroundPatches {
  private:
   using TileKey = models::network::TileKey;
   struct Patch {
-    std::uint64_t asked = 0;  // the last tick in which a node needed it
+    std::uint64_t asked = 0;  // number of the last time that a node needed it
     bool made = false;
   };
   void forget_oldest();
 
   std::uint64_t network_ = 0;  // its identity; 0: none
   std::int64_t near_water_cells_ = 0;
-  std::uint64_t tick_ = 0;
+  std::uint64_t asks_ = 0, tick_begin_ = 0;  // so far, and before this tick
   std::unordered_map<TileKey, Patch, models::network::TileKeyHash> patches_;
   std::vector<TileKey> wanted_;
   std::vector<models::Parameters> parameters_;  // of the requests
