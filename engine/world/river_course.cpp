@@ -53,6 +53,7 @@ double value_at(const std::vector<double>& list, const CurvePoint& at) {
 
 RiverOrder river_order(const World& world, const std::vector<River>& rivers) {
   std::vector<Course> courses;
+  courses.reserve(rivers.size());
   for (const River& river : rivers)
     courses.emplace_back(world, river);
   const std::size_t n = rivers.size();

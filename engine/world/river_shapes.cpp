@@ -202,14 +202,19 @@ class RiverMaker {
     s.bound_m = lowest_m - kFreeboardM - kFreeboard * s.depth_m;
   }
 
+  // True for a river that this one may not cross: of the world file, or a wider one of the network.
+  bool blocks(const models::BodySurface& water, std::size_t i) const {
+    const bool of_network = water.body >= models::kFirstNetworkBody;
+    return water.is_river && !(of_network && water.width_m <= 2 * samples_[i].half_m);
+  }
   // Finds the lakes and rivers on the way. Other rivers may only be at its ends.
   tl::expected<void, WaterError> meet_others() {
     const std::size_t n = curve_.size();
     for (std::size_t i = 0; i < n; ++i) {
       const auto water = below_.water_over(curve_[i].at_m);
       if (!water) continue;
-      samples_[i].in_river = water->is_river;
-      samples_[i].in_lake = !water->is_river;
+      samples_[i].in_river = blocks(*water, i);
+      samples_[i].in_lake = !samples_[i].in_river;
       samples_[i].bound_m = water->surface_m;
     }
     std::size_t first = 0, end = n;
@@ -220,11 +225,13 @@ class RiverMaker {
       --end;
     for (std::size_t i = first; i < end; ++i) {
       const auto at_m = river_before(i, first);
-      if (at_m)
-        return water_error(
-            "points_m", fmt::format("the river crosses another river near {:.1f}, {:.1f} m; it may "
-                                    "only begin or end in one",
-                                    at_m->x, at_m->y));
+      if (!at_m) continue;
+      const bool of_network = below_.water_over(*at_m)->body >= models::kFirstNetworkBody;
+      return water_error(
+          "points_m",
+          fmt::format("the river crosses {} near {:.1f}, {:.1f} m; it may only begin or end in one",
+                      of_network ? "a wider river of the network" : "another river", at_m->x,
+                      at_m->y));
     }
     return {};
   }
@@ -238,7 +245,7 @@ class RiverMaker {
     for (int k = 1; k < steps; ++k) {
       const glm::dvec2 at_m = from_m + way * (static_cast<double>(k) / steps);
       const auto water = below_.water_over(at_m);
-      if (water && water->is_river) return at_m;
+      if (water && blocks(*water, i)) return at_m;
     }
     return std::nullopt;
   }

@@ -78,9 +78,13 @@ double patch_noise(std::uint64_t seed, glm::dvec2 place_m, double patch_m) {
 // Measured once at 2^14 positions.
 double patch_noise_below(double share) {
   static const std::vector<double> sorted = [] {
+    constexpr int kSide = 128;
     std::vector<double> values;
-    for (int i = 0; i < 1 << 14; ++i)
-      values.push_back(patch_noise(0, {0.37 * (i % 128), 0.37 * (i / 128)}, 1));
+    values.reserve(std::size_t{kSide} * kSide);
+    for (int z = 0; z < kSide; ++z) {
+      for (int x = 0; x < kSide; ++x)
+        values.push_back(patch_noise(0, {0.37 * x, 0.37 * z}, 1));
+    }
     std::ranges::sort(values);
     return values;
   }();

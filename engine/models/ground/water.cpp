@@ -184,6 +184,7 @@ std::optional<BodySurface> surface_of(const RiverPiece& river, glm::dvec2 place_
   water.surface_m = foot->value(&RiverPoint::surface_m);
   water.foam = foot->value(&RiverPoint::foam);
   water.discharge_m3_s = foot->value(&RiverPoint::discharge_m3_s);
+  water.width_m = 2 * half_m;
   water.widths = foot->away_m / (2 * half_m);
   glm::dvec2 direction =
       foot->from->direction + foot->share * (foot->to->direction - foot->from->direction);

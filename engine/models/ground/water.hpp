@@ -98,8 +98,8 @@ struct BodySurface {
   glm::dvec2 flow_m_s{0.0};  // along x and z
   double foam = 0;           // 0 … 1
   std::uint32_t body = 0;
-  bool is_river = false;      // else a lake
-  double discharge_m3_s = 0;  // of a river
+  bool is_river = false;                   // else a lake
+  double discharge_m3_s = 0, width_m = 0;  // of a river
   // Distance from the middle in widths of the body: 0 in the middle of a river, 0.5 at the border
   // of the water, −1 everywhere inside the outline of a lake.
   double widths = 0;

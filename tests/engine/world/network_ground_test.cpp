@@ -242,23 +242,29 @@ NetworkBody wet_place(const World& world, bool is_river) {
   ADD_FAILURE() << "no such water";
   return {};
 }
-std::string river_between(glm::dvec2 a_m, glm::dvec2 b_m) {
-  return fmt::format("[[river]]\npoints_m = [[{}, {}], [{}, {}]]\nwidth_m = 3\n", a_m.x, a_m.y,
-                     b_m.x, b_m.y);
+std::string river_between(glm::dvec2 a_m, glm::dvec2 b_m, double width_m) {
+  return fmt::format("[[river]]\npoints_m = [[{}, {}], [{}, {}]]\nwidth_m = {}\n", a_m.x, a_m.y,
+                     b_m.x, b_m.y, width_m);
 }
 
-TEST(NetworkGround, RiversMadeByHandMayEndInThoseOfTheNetworkButNotCrossThem) {
-  const auto [river_m, across] = wet_place(parsed(network_text()), true);
+TEST(NetworkGround, RiversMadeByHandMayEndInWiderOnesOfTheNetworkButNotCrossThem) {
+  const World plain = parsed(network_text());
+  const auto [river_m, across] = wet_place(plain, true);
+  const core::WorldPosition at = plain.position(river_m);
+  const double width_m =
+      plain.layer()->ground.water_over(at.block, {at.local.x, at.local.z}, kBlockM)->width_m;
+  ASSERT_GT(width_m, 2.5);
   const auto error = [](const std::string& tables) {
     models::Registry fresh = models::make_standard_registry();
     const auto world = parse_world(network_text() + tables, "w.toml", fresh);
     return world ? "" : world.error().message;
   };
   const glm::dvec2 from_m = river_m - 60.0 * across, to_m = river_m + 60.0 * across;
-  EXPECT_THAT(error(river_between(from_m, to_m)),
-              HasSubstr("the river crosses another river near"));
-  EXPECT_EQ(error(river_between(from_m, river_m)), "");
-  EXPECT_EQ(error(river_between(river_m, to_m)), "");
+  EXPECT_THAT(error(river_between(from_m, to_m, 0.9 * width_m)),
+              HasSubstr("the river crosses a wider river of the network near"));
+  EXPECT_EQ(error(river_between(from_m, river_m, 0.9 * width_m)), "");
+  EXPECT_EQ(error(river_between(river_m, to_m, 0.9 * width_m)), "");
+  EXPECT_EQ(error(river_between(from_m, to_m, 1.1 * width_m)), "") << "it takes up narrower ones";
 }
 
 // Rivers lie at many heights, above their beds and below their banks, and flow.
