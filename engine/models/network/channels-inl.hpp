@@ -124,11 +124,12 @@ HWY_INLINE void add_still(hn::Mask<FloatTag> wet, Float level, Int body, Water& 
   w.body = hn::IfThenElse(hn::RebindMask(di, more), body, w.body);
 }
 
-// The ground beside a channel: it rises from `height` by `rise`. The valley is lowered to that, by
-// the fraction `force`; levees are raised to the height by the square of `levee`.
+// The ground beside and under a channel: it rises from `height` by `rise`. The valley is lowered to
+// that, by the fraction `force`; levees, and the ground under the water, are raised to the height
+// by the square of `levee`.
 struct Bank {
   Float height, rise, force, levee;
-  hn::Mask<FloatTag> dry;  // beside the water, within reach
+  hn::Mask<FloatTag> dry;  // beside the water, within reach: there the valley is lowered
 };
 HWY_INLINE Bank bank_of(const Beside& b) {
   const FloatTag d;

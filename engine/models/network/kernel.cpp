@@ -287,9 +287,7 @@ class Call {
     add_still(lake_water, lake.level, lake_body, w);
     const auto alone = hn::Eq(w.weight, zero);
     const auto flooded = hn::And(alone, hn::Lt(ground, sea_level));
-    const Int sea_body = hn::Set(di, std::int32_t{kSeaBody});
-    add_still(hn::Or(sea, flooded), sea_level, sea_body, w);
-    w.body = hn::IfThenElse(hn::RebindMask(di, sea), sea_body, w.body);  // also in a river's mouth
+    add_still(hn::Or(sea, flooded), sea_level, hn::Set(di, std::int32_t{kSeaBody}), w);
     write_water(w, ground, at, n, out);
   }
 

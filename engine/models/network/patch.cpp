@@ -12,6 +12,7 @@ constexpr double kReach = 1.08;      // of a kernel, in longest edges of its nod
 constexpr float kStreamGain = 1.5F;  // of a channel's kernel
 constexpr double kMaxWidthM = 150;   // of a channel
 constexpr float kWider = 1.25F;      // a channel so much wider takes in another
+constexpr float kLoweredM = 8;       // widest channel that the valleys of others lower
 
 // Channels at coarse levels are as dense as at the finest.
 std::uint32_t channel_area(const Scale& scale, int level) {
@@ -127,6 +128,7 @@ class Builder {
   struct Joint {
     std::int32_t x2 = 0, z2 = 0;  // half units from the patch's origin
     float width_m = 0, lowest_m = 1e30F;
+    bool is_lowered() const { return lowest_m < 1e30F && width_m <= kLoweredM; }
   };
   struct Joints {
     Joint begin, node, end;
@@ -228,6 +230,24 @@ class Builder {
     patch_.spot_bins = fill(patch_.spots);
     patch_.curve_bins = fill(patch_.curves);
   }
+  // The curves that lower others, with bins, around the square too.
+  void find_wide() {
+    const float narrowest_m = channel_width_m(scale_.km2(channel_), max_m_);
+    std::int32_t east = 0, south = 0;
+    for (std::size_t k = 0; k < curves_.size(); ++k) {
+      const Curve& c = curves_[k];
+      if (c.width0_m < kWider * narrowest_m) continue;
+      from_x_ = wide_.empty() ? c.x : std::min(from_x_, c.x), east = std::max(east, c.x);
+      from_z_ = wide_.empty() ? c.z : std::min(from_z_, c.z), south = std::max(south, c.z);
+      wide_.push_back(c);
+    }
+    const std::int32_t side = std::max(east - from_x_, south - from_z_);
+    wide_bins_ = ReachBins(wide_.size(), side / ReachBins::kSide + 1);
+    for (std::size_t k = 0; k < wide_.size(); ++k) {
+      const std::int32_t x = wide_[k].x - from_x_, z = wide_[k].z - from_z_;
+      wide_bins_.add(k, Box{x, z, x, z}.grown(patch_.reach_units(wide_[k])));
+    }
+  }
 
   using Vector = std::array<double, 2>;  // metres from a node
   // The place and the water where a node's channels end.
@@ -275,33 +295,34 @@ class Builder {
   }
 
   float lowered_m(const Joint& joint, float water_m) const {
-    if (joint.lowest_m >= water_m) return water_m;
+    if (!joint.is_lowered() || joint.lowest_m >= water_m) return water_m;
     float lowest_m = water_m;
-    for (const Curve& wide : curves_) {
-      if (wide.width0_m < kWider * joint.width_m) continue;
+    const std::int32_t bin_x = joint.x2 / 2 - from_x_, bin_z = joint.z2 / 2 - from_z_;
+    wide_bins_.find({bin_x, bin_z, bin_x, bin_z}, [&](std::size_t k) {
+      const Curve& wide = wide_[k];
+      if (wide.width0_m < kWider * joint.width_m) return;
       const auto metres = [&](std::int32_t place2, std::int32_t node) {
         return static_cast<float>(place2 - 2 * node) * (0.5F * patch_.unit_m);
       };
       const float x = metres(joint.x2, wide.x), z = metres(joint.z2, wide.z);
-      if (std::abs(x) > wide.reach_m || std::abs(z) > wide.reach_m) continue;
+      if (std::abs(x) > wide.reach_m || std::abs(z) > wide.reach_m) return;
       lowest_m = std::min(lowest_m, network::lowered_m(wide, x, z, water_m));
-    }
+    });
     return std::max(lowest_m, joint.lowest_m);
   }
   // Lowers the water of channels as the valleys of wider ones lower the ground under them.
   void lower_into_valleys() {
-    std::vector<std::array<float, 3>> lowered(curves_.size());
+    find_wide();
     for (std::size_t k = 0; k < curves_.size(); ++k) {
-      const auto& [from_m, middle_m, to_m] = curves_[k].height_m;
+      auto& [begin_m, node_m, end_m] = curves_[k].height_m;
       Joints joints = joints_[k];
-      const float end_m = lowered_m(joints.end, to_m);
-      if (joints.node.lowest_m <= middle_m) joints.node.lowest_m = end_m;
-      const float node_m = lowered_m(joints.node, middle_m);
-      if (curves_[k].head) joints.begin.lowest_m = std::min(joints.begin.lowest_m, node_m);
-      lowered[k] = {lowered_m(joints.begin, from_m), node_m, end_m};
+      end_m = lowered_m(joints.end, end_m);
+      if (joints.node.is_lowered()) joints.node.lowest_m = end_m;
+      node_m = lowered_m(joints.node, node_m);
+      if (curves_[k].head && joints.begin.is_lowered())
+        joints.begin.lowest_m = std::min(joints.begin.lowest_m, node_m);
+      begin_m = lowered_m(joints.begin, begin_m);
     }
-    for (std::size_t k = 0; k < curves_.size(); ++k)
-      curves_[k].height_m = lowered[k];
   }
 
   // The nearest place of curve c to point s of curve q.
@@ -379,6 +400,9 @@ class Builder {
   double max_m_;
   std::vector<Curve> curves_;   // of all nodes
   std::vector<Joints> joints_;  // of the curves
+  std::vector<Curve> wide_;     // curves that lower others
+  ReachBins wide_bins_;         // of these, from (from_x_, from_z_) on
+  std::int32_t from_x_ = 0, from_z_ = 0;
   struct Arms {
     std::uint32_t begin, end;
   };
@@ -468,10 +492,14 @@ std::int32_t lift(const Scale& scale, int level, float mountain) {
 
 Surroundings surroundings_of(const Scale& scale, int level, const Square& square) {
   const double spacing = static_cast<double>(scale.spacing(level));
-  const double wide = max_width_m(scale, level);
+  const auto wide = static_cast<float>(max_width_m(scale, level));
+  const float narrow = std::min(kLoweredM, wide);
+  // A channel whose banks reach the square may end in another, which lies in the valley of a third.
+  // From joint to joint a channel is two spacings long.
+  const float banks_m =
+      std::max(wide + bank_m(wide), bank_m(narrow) + 1.5F * narrow + bank_m(wide) + 0.5F * wide);
   const double reach =
-      std::max(kReach * kLongestEdge * spacing,
-               3 * spacing + (wide / 2 + wide / 2 + kValleyM + kBankWidths * wide) / scale.unit_m);
+      std::max(kReach * kLongestEdge * spacing, 5 * spacing + double{banks_m} / scale.unit_m);
   return {square, static_cast<std::int64_t>(reach) + 5 * kGuideUnits};
 }
 

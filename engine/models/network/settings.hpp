@@ -11,7 +11,7 @@ namespace psygen::models {
 // The shape of a network. Everything but `channel_km2` scales with `root_spacing_m`.
 struct RiverSettings {
   // Names the rules of the network. A change of any rule that moves a bit raises it.
-  static constexpr std::uint64_t kEdition = 2;
+  static constexpr std::uint64_t kEdition = 3;
   // Names the random numbers, and so the courses of rivers and the heights of nodes.
   static constexpr std::uint64_t kRandomEdition = 1;
 
