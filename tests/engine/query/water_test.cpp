@@ -12,6 +12,7 @@ namespace psygen::query {
 namespace {
 
 using testing::Loaded;
+using world::testing::replaced;
 using world::testing::river_text;
 
 class WaterQuery : public ::testing::Test {
@@ -165,6 +166,21 @@ TEST_F(WaterQuery, TellsTheDischargeOfRiversAlone) {
   EXPECT_GT(still, 100U);
   EXPECT_GT(dry, 100U);
   EXPECT_FALSE(query_.river_discharge_m3_s(at({-40, 0}, 0))) << "outside the world";
+}
+
+TEST_F(WaterQuery, TheFirstQuestionForADischargeFollowsTheWorld) {
+  // From block (0, 0) the size of blocks decides which place that is.
+  const core::WorldPosition place{{0, 0}, {1960, 0, 1752}};
+  const auto before = query_.river_discharge_m3_s(place);
+  ASSERT_TRUE(before && before->has_value());
+  Loaded other =
+      Loaded::parsed(replaced(replaced(river_text(), "block_vertices = 65", "block_vertices = 33"),
+                              "blocks = [48, 48]", "blocks = [96, 96]"));
+  other.world.revision.number = loaded_.world.revision.number + 1;
+  std::swap(loaded_, other);
+  const auto after = query_.river_discharge_m3_s(place);
+  ASSERT_TRUE(after && after->has_value());
+  EXPECT_NEAR(after->value(), before->value(), 0.3 * before->value());
 }
 
 // Places in the water of rivers, and rays that come down to them from 400 m away.
