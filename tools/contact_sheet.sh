@@ -8,8 +8,8 @@ out="${1:-out/contact_sheet}" size="${2:-480x270}"
 psygen="${PSYGEN:-build/release/bin/psygen}"
 presets=(low medium high ultra)
 # World, position, height, yaw and pitch of the camera.
-views=("silver_combe -1257,3978 24 110 -10"
-       "lakes -90,-30 26 220 -7"
+views=("silver_combe -2790,1884 26 258 -8"
+       "lakes -1700,-1800 26 250 -7"
        "ember_pass -700,0 35 300 -7"
        "thorn_country 31,31 12 40 -4"
        "frost_isle -700,0 35 310 -7"

@@ -59,7 +59,7 @@ TEST(FarPlaces, AFlightThroughAFullCacheIsNoCoarserThanAFreshStart) {
   options.scene.budget_bytes = 24ull << 20;
   Studio studio("silver_combe.toml", options);
   core::CameraPose pose = studio.above({300, 300}, 20, 30, 6, 1.57, -0.1);
-  pose.position.local.y = 340;  // above every hill
+  pose.position.local.y = 470;  // above every hill
   studio.settle(pose);
   for (int i = 0; i < 500; ++i) {
     pose.position.local.x += 20;

@@ -20,8 +20,9 @@ TEST_P(GoldenLakes, LieBetweenTheirHills) {
   auto session = Session::create(options);
   ASSERT_TRUE(session) << session.error().message;
   world::PathPoint point;
-  point.height_m = 60;
-  point.heading_deg = 220;
+  point.at_m = {-1700, -1800};
+  point.height_m = 32;
+  point.heading_deg = 250;
   point.pitch_deg = -8;
   const core::CameraPose pose =
       world::CameraPath({}, {point}).pose_at(0, (*session)->scene().world());

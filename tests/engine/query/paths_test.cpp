@@ -36,7 +36,10 @@ TEST_P(ShippedPath, KeepsClearOfGroundWaterAndSlopes) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Flights, ShippedPath, ::testing::Values(Flight{"watershed", "watershed"}),
+INSTANTIATE_TEST_SUITE_P(Flights, ShippedPath,
+                         ::testing::Values(Flight{"watershed", "watershed"},
+                                           Flight{"silver_combe", "combe"},
+                                           Flight{"lakes", "lakes"}),
                          [](const auto& flight) { return std::string(flight.param.path); });
 
 }  // namespace
