@@ -8,7 +8,6 @@
 #include <map>
 #include <utility>
 
-#include "engine/core/assert.hpp"
 #include "engine/core/clock.hpp"
 #include "engine/core/headroom.hpp"
 #include "engine/core/log.hpp"
@@ -304,10 +303,10 @@ bool SynthesisManager::make_next_here() {
     execute_here(request);
     return true;
   }
-  PSYGEN_ASSERT(unclaimed_.empty(), "earlier plans are reclaimed before a wait");
+  std::vector<Request> earlier = std::exchange(unclaimed_, {});  // of earlier plans
   close_plan();
   std::vector<Request> plan{std::move(request)};
-  std::ranges::move(std::exchange(unclaimed_, {}), std::back_inserter(plan));
+  std::ranges::move(std::exchange(unclaimed_, std::move(earlier)), std::back_inserter(plan));
   publish_to_threads(std::move(plan));
   return false;
 }
