@@ -23,7 +23,7 @@ if grep -hE 'INTERFACE_LINK_LIBRARIES ' "$cmake_files"/*.cmake | grep -oE '"[^"]
   echo "the package links the libraries above by their bare names"; exit 1
 fi
 # Paths below the place of installation may end in the name of this folder, as include/psygen.
-if sed -E 's#\$\{_IMPORT_PREFIX\}/[^"; ]*##g' "$cmake_files"/*.cmake |
+if sed -E 's#\$\{[A-Za-z_]+\}/[^"; )]*##g' "$cmake_files"/*.cmake |
   grep -E 'GLM_FORCE|ffp-contract|disable-new-dtags|'"$source"; then
   echo "the package has the settings above for its users"; exit 1
 fi
