@@ -25,7 +25,7 @@ constexpr const char* kMpi =
     "OMPI_MCA_odls_base_sigkill_timeout=0 mpirun";
 
 constexpr const char* kFly =
-    "fly --headless --size 64x36 --world rocks.toml --view-distance 150 --frames 1 --images 1 "
+    "fly --headless --size 64x36 --world rocks.toml --view-distance 500 --frames 1 --images 1 "
     "--modelers 1 --lod off --json ";
 
 // Each rock takes about a millisecond.
