@@ -10,12 +10,19 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "engine/models/kit/vectors-inl.hpp"
 #include "engine/models/network/kernel.hpp"
 #include "engine/models/network/patch.hpp"
-#include "engine/models/network/vectors-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace psygen::models::network::HWY_NAMESPACE {
+
+using namespace models::HWY_NAMESPACE;  // the vectors
+
+// A smooth step from 0 to 1 of t, 0 … 1.
+HWY_INLINE Float smooth(Float t) {
+  return hn::Mul(hn::Mul(t, t), hn::Sub(set(3), hn::Mul(set(2), t)));
+}
 
 // The position of a vector of samples against a channel.
 struct Beside {

@@ -13,12 +13,14 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "engine/models/kit/vectors-inl.hpp"
 #include "engine/models/network/kernel.hpp"
 #include "engine/models/network/patch.hpp"
-#include "engine/models/network/vectors-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace psygen::models::network::HWY_NAMESPACE {
+
+using namespace models::HWY_NAMESPACE;  // the vectors
 
 // Points of the guide along an axis, and floats of a row of any grid.
 constexpr std::size_t kMaxGuide = 48, kRow = 96;

@@ -345,22 +345,15 @@ std::optional<InlandWater> RiverNetwork::inland_water_at(const core::WorldPositi
 
 std::optional<NetworkChannel> RiverNetwork::channel_of(const NetworkWater& water,
                                                        const PatchPlace& at) {
-  constexpr float kEqualM = 0.02F;
   const network::Patch& patch = *at.patch;
   const network::Box here{at.x, at.z, at.x, at.z};
-  // Channels run through lakes, at their level.
-  const bool in_lake = std::ranges::any_of(patch.lakes, [&](const network::Lake& lake) {
-    return std::abs(lake.level_m - water.surface_m) < kEqualM;
-  });
-  if (in_lake && patch.may_have_lake(here)) return std::nullopt;
+  if (patch.is_lake_level(double{water.surface_m}) && patch.may_have_lake(here))
+    return std::nullopt;
   std::optional<NetworkChannel> channel;
   float least = 0.5F;  // distance in widths
   patch.each_curve(here, [&](const network::Curve& c) {
-    const auto metres = [&](std::int32_t v, std::int32_t of) {
-      return static_cast<float>(v - of) * patch.unit_m;
-    };
     const network::NearestPlace near =
-        network::nearest_place(c, metres(at.x, c.x), metres(at.z, c.z));
+        network::nearest_place(c, patch.metres(c.x, at.x), patch.metres(c.z, at.z));
     const float width_m = network::width_m(c, near.t), widths = near.distance_m / width_m;
     if (widths > least) return;
     least = widths;
@@ -410,13 +403,6 @@ float RiverNetwork::usual_error_m(GroundDetail from, GroundDetail to) const {
 double RiverNetwork::work(double samples, GroundDetail detail) const {
   constexpr double kGuided = 40, kExact = 70;
   return samples * (is_fine(detail) ? kGuided : kExact);
-}
-
-double RiverNetwork::patch_work(double side_cells, GroundDetail detail) const {
-  constexpr double kPatch = 2e7;
-  const double tiles = side_cells * static_cast<double>(network::kUnitsPerCell) /
-                       static_cast<double>(tile_units(level_of(detail)));
-  return kPatch * tiles * tiles;
 }
 
 }  // namespace psygen::models

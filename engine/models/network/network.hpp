@@ -98,9 +98,6 @@ class RiverNetwork {
   float usual_error_m(GroundDetail from, GroundDetail to) const;
   // Estimated time of evaluate() with a warm patch, in units of RidgedNoise::work().
   double work(double samples, GroundDetail detail) const;
-  // The part of the estimated time of patches that a square of so many cells a side takes, in the
-  // same units, whether or not the store has them.
-  double patch_work(double side_cells, GroundDetail detail) const;
 
   // The level of the nodes that a detail reads: the coarsest that vertices of it can tell.
   int level_of(GroundDetail detail) const;

@@ -5,13 +5,13 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <compare>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
+#include "engine/models/network/curve.hpp"
 #include "engine/models/network/halving.hpp"
 
 namespace psygen::models::network {
@@ -32,30 +32,6 @@ struct Spot {
   float depth_m = 0;       // of a lake
   std::int32_t reach = 0;  // R, units, rounded up
   std::int32_t lake = -1;  // index in Patch::lakes
-};
-
-// A channel from the middle of an inflow towards (not through) its node to the middle of the
-// outflow: a quadratic Bézier curve whose heights are blended alike, so they never rise.
-//
-// Water that touches other water neither rises nor has a step:
-// - Arms of one node end at one height. From where two of them touch, both have that height.
-// - A channel that runs into a wider and lower one ends there, and falls to its height before.
-// - Other water that overlaps is blended (kernel.cpp), so that each middle keeps its own height.
-struct Curve {
-  static constexpr std::size_t kChords = 6;
-  std::int32_t x = 0, z = 0;       // of its node, units from the patch's origin
-  std::uint32_t chords = kChords;  // in use; fewer if the channel ends in a wider one
-  // Metres from the node.
-  std::array<float, kChords + 1> px{}, pz{};
-  std::array<float, kChords> inverse_length2{};  // 1/m²; 0: the chord has no length
-  std::array<float, 3> height_m{};               // of the water, never rising
-  float min_m = -1e30F;                          // the water is no lower
-  std::array<float, 4> turn{};  // direction x, z at the beginning and at the end, not normalised
-  float width0_m = 0, width1_m = 0;
-  float discharge_m3_s = 0;
-  float reach_m = 0;  // no point farther from the node changes
-  std::uint32_t body = 0;
-  bool head = false;  // a spring: the bed begins here
 };
 
 // A lake: all its spots share the level.
@@ -151,6 +127,9 @@ struct Patch {
   // False if neither a lake nor a channel covers any place of a box.
   bool may_have_water(const Box& box) const;
 
+  // True for the height of the surface of a lake. Channels run through lakes, at their level.
+  bool is_lake_level(double surface_m, double tolerance_m = 0.02) const;
+
   // The reach of a spot or a curve in units, rounded up; and true if it reaches a box.
   static std::int32_t reach_units(const Spot& s) { return s.reach; }
   std::int32_t reach_units(const Curve& c) const {
@@ -160,51 +139,39 @@ struct Patch {
   bool reaches(const Thing& thing, const Box& box) const {
     return box.grown(reach_units(thing)).holds(thing.x, thing.z);
   }
+  // Metres between two places along an axis, in units.
+  float metres(std::int32_t from, std::int32_t to) const {
+    return static_cast<float>(to - from) * unit_m;
+  }
   // Memory of the patch, with its lists.
   std::size_t bytes() const;
-};
 
-// Mean discharge of a river with this drainage area, in m³/s: 20 litres a second from a km², about
-// 630 mm of rain a year that does not evaporate. The speed of channels follows from it.
-constexpr double kRunoffM3_SKm2 = 0.02;
-constexpr double discharge_m3_s(double km2) {
-  return kRunoffM3_SKm2 * km2;
-}
-// Water as wide as a river with this drainage area, at most `max_m`.
-float channel_width_m(double km2, double max_m);
-// Depth of the middle of a channel, in metres and in widths.
-constexpr float kBedM = 0.25F, kBedWidths = 0.07F;
-constexpr float channel_depth_m(float width_m) {
-  return kBedM + kBedWidths * width_m;
-}
-// Speed in the middle of a channel, in m/s, at most kFastestM_S. Depth and speed are parabolas
-// across, so it is 1.25 times the discharge over the cross-section.
-constexpr float kMiddleSpeed = 1.25F / (2.0F / 3.0F), kFastestM_S = 6;
-constexpr float middle_speed_m_s(float discharge_m3_s, float width_m) {
-  return std::min(kMiddleSpeed * discharge_m3_s / (width_m * channel_depth_m(width_m)),
-                  kFastestM_S);
-}
-// Height and width of the water of a curve, in metres; t: its parameter, 0 … 1.
-float level_m(const Curve& c, float t);
-constexpr float width_m(const Curve& c, float t) {
-  return c.width0_m + t * (c.width1_m - c.width0_m);
-}
-// The place of a curve that is nearest to a point, which is in metres from the curve's node.
-struct NearestPlace {
-  float distance_m = 0, t = 0;
+  // For those who make the patch. Units of a node from the origin:
+  std::int32_t x_of(const Node& n) const { return static_cast<std::int32_t>(n.x - x); }
+  std::int32_t z_of(const Node& n) const { return static_cast<std::int32_t>(n.z - z); }
+  // True if a disc touches the square, or guide points around it.
+  bool is_reached(std::int32_t at_x, std::int32_t at_z, double reach) const;
+  // Bins of spots or curves. Those beyond the square lie in the bins at its border.
+  template <class Thing>
+  ReachBins bins_of(const std::vector<Thing>& things) const {
+    ReachBins bins(things.size(), static_cast<std::int32_t>(square.side / ReachBins::kSide) + 1);
+    for (std::size_t k = 0; k < things.size(); ++k) {
+      const std::int32_t at_x = things[k].x, at_z = things[k].z;
+      bins.add(k, Box{at_x, at_z, at_x, at_z}.grown(reach_units(things[k])));
+    }
+    return bins;
+  }
+  // Ends the making of the patch.
+  void fill_bins();
 };
-NearestPlace nearest_place(const Curve& c, float x_m, float z_m);
-// Width of the ground beside a channel that the channel lowers, and that it may raise.
-constexpr float kValleyM = 36, kLeveeM = 12, kBankWidths = 1.5F;
-// Beside the water's edge the lowered ground rises by the bank within a metre, and by this slope.
-constexpr float kBankRiseM = 0.3F, kValleySlope = 0.12F;
-constexpr float bank_m(float width_m) {
-  return kValleyM + kBankWidths * width_m;
-}
 
 // The exact monotone map from heights of the network to heights of the world. Height 0 becomes the
 // sea level, and all heights stay within the relief.
 float height_m(const Scale& scale, std::int32_t height);
+// Height of the water of a node in metres; the sea's over its floor.
+inline float water_m(const Scale& scale, const Node& n) {
+  return height_m(scale, std::max(n.height, 0));
+}
 
 // Mean height of the ground of the finest level above the nodes of a level, in units of height.
 std::int32_t lift(const Scale& scale, int level, float mountain);

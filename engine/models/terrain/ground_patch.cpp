@@ -26,7 +26,7 @@ class GroundPatchType final : public TaskType {
   std::span<const ParameterSpec> parameters() const override { return kSchema; }
   // The coarsest patches need more of the root.
   double steps(const Parameters& p, int) const override { return p.integer(kLevel) < 3 ? 3 : 1; }
-  double step_seconds() const override { return 3e-3; }
+  double step_seconds() const override { return 2e-3; }
   bool may_run_on_main_thread() const override { return true; }
 
  private:

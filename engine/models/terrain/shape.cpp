@@ -311,9 +311,7 @@ double TerrainShape::layer_work(LatticeSpan x, LatticeSpan z, double heights,
     work += reads * noise.work(side, side, spacing, wide);
   } else {
     work += network->work(reads * heights, guide_detail(detail, GroundMask::kGuideCells));
-    // Neighbours share patches, also those of light from afar.
     work += network->work(heights, detail) +
-            network->patch_work(std::ldexp(size - 1, node_level), detail) +
             noise.work(side, side, spacing,
                        std::min(octaves(detail), octaves_of_nodes(noise, *network)));
   }

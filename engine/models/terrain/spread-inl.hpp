@@ -1,6 +1,5 @@
-// The vectors of the terrain's kernels, and the linear interpolation of a row of coarse samples at
-// finer samples between them. Only kernels of the terrain include it, once per instruction set;
-// hence the unusual include guard.
+// Linear interpolation of a row of coarse samples at finer samples between them. Only kernels of
+// the terrain include it, once per instruction set; hence the unusual include guard.
 #if defined(PSYGEN_MODELS_TERRAIN_SPREAD_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef PSYGEN_MODELS_TERRAIN_SPREAD_INL
 #undef PSYGEN_MODELS_TERRAIN_SPREAD_INL
@@ -8,26 +7,13 @@
 #define PSYGEN_MODELS_TERRAIN_SPREAD_INL
 #endif
 
-#include <hwy/highway.h>
-
 #include <cstddef>
 #include <cstdint>
 
+#include "engine/models/kit/vectors-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace psygen::models::HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
-
-// Vectors of at most 16 numbers.
-using FloatTag = hn::CappedTag<float, 16>;
-using IntTag = hn::RebindToSigned<FloatTag>;
-using UintTag = hn::RebindToUnsigned<FloatTag>;
-using Float = hn::Vec<FloatTag>;
-
-// `value` in every lane.
-HWY_INLINE Float set(float value) {
-  return hn::Set(FloatTag(), value);
-}
 
 // Fine sample i lies at `phase` + i · `step`, coarse sample k at k · `spacing`. A weight depends
 // only on the remainder of its place by `spacing`, so rows with another start give the same bits.

@@ -25,13 +25,7 @@ class NetworkSurface {
         to_(to),
         detail_(GroundDetail::of_node(node.level)),
         square_(network.square_of(node.block, node.level)),
-        parts_(network.parts_of(square_, detail_)) {
-    for (const RiverNetwork::Part& part : parts_) {
-      for (const network::Lake& lake : part.patch->lakes)
-        levels_m_.push_back(double{lake.level_m});
-    }
-    std::ranges::sort(levels_m_);
-  }
+        parts_(network.parts_of(square_, detail_)) {}
 
   // A channel belongs to the node in which its network's node lies.
   void add_channels() {
@@ -76,8 +70,10 @@ class NetworkSurface {
       if (!(water[i] > height[i]) ||
           water[i] < static_cast<float>(network_.frame().sea_level_m) + kEqualM)
         return false;
-      // Channels run through lakes, at their level.
-      return (flow_x[i] == 0 && flow_z[i] == 0) || is_level(double{water[i]}, double{kEqualM});
+      return (flow_x[i] == 0 && flow_z[i] == 0) ||
+             std::ranges::any_of(parts_, [&](const RiverNetwork::Part& part) {
+               return part.patch->is_lake_level(double{water[i]});
+             });
     };
     const auto away_m = [&](const auto& lines, std::size_t i) {
       return static_cast<double>(lines[i] - lines.front()) * network_.frame().cell_m;
@@ -109,12 +105,6 @@ class NetworkSurface {
   }
 
  private:
-  // True for the height of a lake's surface.
-  bool is_level(double surface_m, double tolerance_m) const {
-    const auto found = std::ranges::upper_bound(levels_m_, surface_m - tolerance_m);
-    return found != levels_m_.end() && *found < surface_m + tolerance_m;
-  }
-
   // `origin_m`: the curve's node, from the corner of the node of the quadtree.
   void add(const network::Patch& patch, const Curve& curve, glm::dvec2 origin_m) {
     if (!node_.shows(double{curve.width1_m}) || to_.is_full()) return;
@@ -140,7 +130,7 @@ class NetworkSurface {
       return node + static_cast<std::int32_t>(away_m / patch.unit_m);
     };
     const std::int32_t x = at(curve.x, curve.px[i]), z = at(curve.z, curve.pz[i]);
-    return is_level(to_m, kEqualM) && patch.may_have_lake({x, z, x, z});
+    return patch.is_lake_level(to_m, kEqualM) && patch.may_have_lake({x, z, x, z});
   }
 
   CrossSection section(const Curve& curve, std::size_t i, glm::dvec2 origin_m) const {
@@ -184,7 +174,6 @@ class NetworkSurface {
   GroundDetail detail_;
   RiverNetwork::Cells square_;
   std::vector<RiverNetwork::Part> parts_;
-  std::vector<double> levels_m_;  // of lakes, ascending
 };
 
 }  // namespace

@@ -1,10 +1,10 @@
-// The vectors of the kernel of a network. Only the kernel includes it, once per instruction set;
-// hence the unusual include guard.
-#if defined(PSYGEN_MODELS_NETWORK_VECTORS_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef PSYGEN_MODELS_NETWORK_VECTORS_INL
-#undef PSYGEN_MODELS_NETWORK_VECTORS_INL
+// Vectors of kernels: at most 16 numbers. Kernels include it once per instruction set; hence the
+// unusual include guard.
+#if defined(PSYGEN_MODELS_VECTORS_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef PSYGEN_MODELS_VECTORS_INL
+#undef PSYGEN_MODELS_VECTORS_INL
 #else
-#define PSYGEN_MODELS_NETWORK_VECTORS_INL
+#define PSYGEN_MODELS_VECTORS_INL
 #endif
 
 #include <hwy/highway.h>
@@ -14,15 +14,18 @@
 #include <cstdint>
 
 HWY_BEFORE_NAMESPACE();
-namespace psygen::models::network::HWY_NAMESPACE {
+namespace psygen::models::HWY_NAMESPACE {
 
-// Vectors of at most 16 numbers.
+// At most this many numbers.
 namespace hn = hwy::HWY_NAMESPACE;
-using FloatTag = hn::CappedTag<float, 16>;
+constexpr std::size_t kMaxLanes = 16;
+using FloatTag = hn::CappedTag<float, kMaxLanes>;
 using IntTag = hn::RebindToSigned<FloatTag>;
+using UintTag = hn::RebindToUnsigned<FloatTag>;
 using Float = hn::Vec<FloatTag>;
 using Int = hn::Vec<IntTag>;
 
+// `value` in every lane.
 HWY_INLINE Float set(float value) {
   return hn::Set(FloatTag(), value);
 }
@@ -38,22 +41,19 @@ HWY_INLINE std::size_t lanes() {
 // The first n lanes of rows of callers, which end with their last sample.
 HWY_INLINE Float load_few(const float* from, std::size_t n) {
   if (n == lanes()) return load(from);
-  HWY_ALIGN float few[16] = {};
+  HWY_ALIGN float few[kMaxLanes] = {};
   std::copy_n(from, n, few);
   return hn::Load(FloatTag(), few);
 }
 template <class D, class V, class T>
 HWY_INLINE void store_few(V value, D d, T* to, std::size_t n) {
   if (n == lanes()) return hn::StoreU(value, d, to);
-  HWY_ALIGN T few[16];
+  HWY_ALIGN T few[kMaxLanes];
   hn::Store(value, d, few);
   std::copy_n(few, n, to);
 }
-HWY_INLINE Float smooth(Float t) {
-  return hn::Mul(hn::Mul(t, t), hn::Sub(set(3), hn::Mul(set(2), t)));
-}
 
-}  // namespace psygen::models::network::HWY_NAMESPACE
+}  // namespace psygen::models::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif
