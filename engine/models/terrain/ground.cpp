@@ -167,29 +167,15 @@ void sample_ground(const Parameters& terrain, core::BlockCoord block,
     ground[i] = all.at(local_xz[i]);
 }
 
-namespace {
-
 // Where heights are kept, a place in the block costs no more than all of the block, once.
-BlockGround ground_at(const Parameters& terrain, core::BlockCoord block, glm::dvec2 local_m) {
-  const bool keeps = terrain.edits() != nullptr && terrain.edits()->ground.heights != nullptr;
-  const double block_m = terrain_block_size_m(terrain);
-  const bool inside =
-      local_m.x >= 0 && local_m.y >= 0 && local_m.x < block_m && local_m.y < block_m;
-  return {terrain, block, keeps && inside ? std::size_t{kMaxTerrainSize} * kMaxTerrainSize : 1};
-}
-
-}  // namespace
-
 double ground_height_m(const Parameters& terrain, core::BlockCoord block, double local_x,
                        double local_z) {
   const core::RoundToNearest rounding;
-  return ground_at(terrain, block, {local_x, local_z}).at({local_x, local_z}).height_m;
-}
-
-glm::vec3 ground_normal(const Parameters& terrain, core::BlockCoord block, double local_x,
-                        double local_z) {
-  const core::RoundToNearest rounding;
-  return ground_at(terrain, block, {local_x, local_z}).at({local_x, local_z}).normal;
+  const bool keeps = terrain.edits() != nullptr && terrain.edits()->ground.heights != nullptr;
+  const double block_m = terrain_block_size_m(terrain);
+  const bool inside = local_x >= 0 && local_z >= 0 && local_x < block_m && local_z < block_m;
+  const std::size_t points = keeps && inside ? std::size_t{kMaxTerrainSize} * kMaxTerrainSize : 1;
+  return BlockGround(terrain, block, points).at({local_x, local_z}).height_m;
 }
 
 }  // namespace psygen::models

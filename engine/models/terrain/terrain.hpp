@@ -114,10 +114,8 @@ struct GroundPoint {
 void sample_ground(const Parameters& terrain, core::BlockCoord block,
                    std::span<const glm::dvec2> local_xz, std::span<GroundPoint> ground);
 
-// The ground under one point: its height in metres, and its normal.
+// The height in metres of the ground under one point.
 double ground_height_m(const Parameters& terrain, core::BlockCoord block, double local_x,
                        double local_z);
-glm::vec3 ground_normal(const Parameters& terrain, core::BlockCoord block, double local_x,
-                        double local_z);
 
 }  // namespace psygen::models

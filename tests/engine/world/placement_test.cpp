@@ -30,6 +30,14 @@ std::vector<Placement> placed(const World& world, core::BlockCoord block) {
   return out;
 }
 
+// The normal of the ground under a place, in metres from the corner of a block.
+glm::vec3 ground_normal(const World& world, core::BlockCoord block, const glm::vec3& at_m) {
+  const glm::dvec2 xz(double{at_m.x}, double{at_m.z});
+  models::GroundPoint ground;
+  models::sample_ground(world.terrain, block, {&xz, 1}, {&ground, 1});
+  return ground.normal;
+}
+
 std::string filtered(std::string_view filters) {
   return std::string(kSmallWorld) + std::string(filters);
 }
@@ -148,9 +156,7 @@ TEST(Placement, FiltersAreObeyedAndModelsMoveToAllowedPlaces) {
       ++found;
       EXPECT_GE(p.position.y, 8 - 1e-4);
       EXPECT_LE(p.position.y, 40 + 1e-4);
-      const glm::vec3 normal =
-          models::ground_normal(world.terrain, {x, 0}, static_cast<double>(p.position.x),
-                                static_cast<double>(p.position.z));
+      const glm::vec3 normal = ground_normal(world, {x, 0}, p.position);
       EXPECT_GE(normal.y, std::cos(30 * 3.14159265 / 180) - 1e-5);
     }
   }
@@ -177,9 +183,7 @@ TEST(Placement, GrassFollowsTheSlopeOfTheGround) {
     ASSERT_EQ(models.size(), 28U);
     for (std::size_t i = 8; i < models.size(); ++i) {
       const Placement& p = models[i];
-      const glm::vec3 normal =
-          models::ground_normal(world.terrain, block, static_cast<double>(p.position.x),
-                                static_cast<double>(p.position.z));
+      const glm::vec3 normal = ground_normal(world, block, p.position);
       const double x = p.parameters.real(models::kGrassSlopeX);
       const double z = p.parameters.real(models::kGrassSlopeZ);
       EXPECT_FLOAT_EQ(static_cast<float>(x), std::clamp(-normal.x / normal.y, -1.5F, 1.5F));
