@@ -24,11 +24,6 @@ QString parameters_text(const models::ModelType& type, const models::Parameters&
   return text;
 }
 
-QString water_lines(const Selection& selection, const scene::Scene& scene) {
-  const auto water = water_facts(scene.world(), selection.at);
-  return water ? water_text(*water) + "\n\n" : QString();
-}
-
 QString describe(const Selection& selection, const scene::Scene& scene) {
   const models::ModelType& type = scene.registry()[selection.model];
   const models::Parameters& p = selection.parameters;
@@ -40,7 +35,10 @@ QString describe(const Selection& selection, const scene::Scene& scene) {
               .arg(selection.at.local.y, 0, 'f', 1)
               .arg(selection.at.local.z, 0, 'f', 1)
               .arg(selection.distance_m, 0, 'f', 1);
-  if (selection.kind == query::HitKind::kGround) text += water_lines(selection, scene);
+  if (selection.kind == query::HitKind::kGround) {
+    const QString water = water_text(world::water_at(scene.world(), selection.at));
+    if (!water.isEmpty()) text += water + "\n\n";
+  }
   const int levels = type.level_count_of(p);
   text += tr("Level of detail: triangles, error, predicted time\n");
   for (int level = 0; level < levels; ++level) {

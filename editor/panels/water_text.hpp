@@ -3,11 +3,11 @@
 
 #include <QString>
 
-#include "editor/view/water_probe.hpp"
+#include "engine/world/water.hpp"
 
 namespace psygen::editor {
 
-// Body, surface and depth in metres; of a river also speed and discharge.
-QString water_text(const WaterFacts& water);
+// Body, surface and depth in metres; of a river also speed and discharge. Empty: dry.
+QString water_text(const world::WaterPoint& water);
 
 }  // namespace psygen::editor

@@ -59,8 +59,7 @@ void add_frame_status(QStatusBar& bar, WorldView& view) {
   auto* timer = new QTimer(label);
   QObject::connect(timer, &QTimer::timeout, label, [label, water, times, &view] {
     label->setText(status_text(view, times->frame_ms));
-    const auto under = view.water_under_pointer();
-    water->setText(under ? water_text(*under) : QString());
+    water->setText(water_text(view.water_under_pointer()));
   });
   timer->start(kUpdateMs);
 }

@@ -146,7 +146,7 @@ void add_rivers(QMenu& menu, const EditorContext& context) {
   QAction* rivers =
       menu.addAction(tr("River net&work"), tr("Ctrl+J"), &context.window, [context](bool on) {
         context.view.rivers().set_on(on);
-        if (on && network_of(context.document.world()) == nullptr)
+        if (on && context.document.world().network() == nullptr)
           context.messages.show_message(
               tr("The world has no river network. Add the section [rivers] to its file."));
       });

@@ -142,19 +142,13 @@ class Maker {
   void add_shores() {
     const auto sea_m = static_cast<float>(network_.frame().sea_level_m);
     const Samples s = sample();
-    std::vector<float> levels_m;
-    for (const RiverNetwork::Part& part : parts_) {
-      for (const auto& lake : part.patch->lakes)
-        levels_m.push_back(lake.level_m);
-    }
-    std::ranges::sort(levels_m);
     const auto is_lake = [&](std::size_t k) {
       constexpr float kEqualM = 0.02F;
       if (!(s.water[k] > s.height[k]) || s.water[k] < sea_m + kEqualM) return false;
-      if (s.flow_x[k] == 0 && s.flow_z[k] == 0) return true;
-      // Channels run through lakes, at their level.
-      const auto level = std::ranges::upper_bound(levels_m, s.water[k] - kEqualM);
-      return level != levels_m.end() && *level < s.water[k] + kEqualM;
+      return (s.flow_x[k] == 0 && s.flow_z[k] == 0) ||
+             std::ranges::any_of(parts_, [&](const RiverNetwork::Part& part) {
+               return part.patch->is_lake_level(double{s.water[k]});
+             });
     };
     const auto is_sea = [&](std::size_t k) {
       return s.height[k] < sea_m && s.water[k] > s.height[k] && !is_lake(k);

@@ -1,14 +1,13 @@
 #include "editor/view/river_overlay.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "engine/core/headroom.hpp"
-#include "engine/models/edits.hpp"
+#include "engine/core/task.hpp"
+#include "engine/models/network/store.hpp"
 
 namespace psygen::editor {
 namespace {
@@ -20,14 +19,9 @@ constexpr float kLiftM = 0.15F, kLiftPerM = 0.002F, kNearer = 0.03F, kNearerFrom
                 kNearerFullyM = 250;
 // Lines end at this distance, in halves of the finest square, and are thin from a third of it on:
 // farther ones would cover the horizon.
-constexpr double kSeenSquares = 3;
+constexpr double kSeenHalves = 3;
 
 }  // namespace
-
-std::shared_ptr<const models::RiverNetwork> network_of(const world::World& world) {
-  const auto& layer = world.layer();
-  return layer ? layer->ground.network : nullptr;
-}
 
 RiverOverlay::~RiverOverlay() {
   if (!next_.valid()) return;
@@ -36,7 +30,7 @@ RiverOverlay::~RiverOverlay() {
 }
 
 void RiverOverlay::follow(const world::World& world, const core::WorldPosition& eye) {
-  const auto network = on_ ? network_of(world) : nullptr;
+  const models::RiverNetwork* const network = on_ ? world.network() : nullptr;
   const Source source{network == nullptr ? 0 : network->identity(), world.blocks_x, world.blocks_z};
   if (next_.valid() && (network == nullptr || of_next_.source != source)) *cancelled_ = true;
   take();
@@ -54,8 +48,7 @@ void RiverOverlay::follow(const world::World& world, const core::WorldPosition& 
 }
 
 void RiverOverlay::take() {
-  if (!next_.valid() || next_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
-    return;
+  if (!core::is_ready(next_)) return;
   auto made = next_.get();
   if (*cancelled_) return;  // a part of a map, or an obsolete one
   map_ = std::move(made);
@@ -71,23 +64,21 @@ void RiverOverlay::start(const models::RiverNetwork& network, const Order& order
     network_ = std::move(*own);
   }
   cancelled_ = std::make_shared<std::atomic<bool>>(false);
-  using Task = std::packaged_task<std::shared_ptr<const RiverMap>()>;
-  const auto task = std::make_shared<Task>([own = network_, order, cancelled = cancelled_] {
-    const glm::dvec2 blocks(static_cast<double>(order.source.blocks_x),
-                            static_cast<double>(order.source.blocks_z));
-    return std::make_shared<const RiverMap>(make_river_map(*own, order.around, blocks, *cancelled));
-  });
-  auto thread = core::start_thread([task] { (*task)(); });
-  if (!thread) return;  // another frame tries again
-  next_ = task->get_future();
-  thread->detach();
+  next_ = core::start_task(
+      [own = network_, order, cancelled = cancelled_] {
+        const glm::dvec2 blocks(static_cast<double>(order.source.blocks_x),
+                                static_cast<double>(order.source.blocks_z));
+        return std::make_shared<const RiverMap>(
+            make_river_map(*own, order.around, blocks, *cancelled));
+      },
+      core::TaskPriority::kLowest);
 }
 
 void add_river_lines(const RiverMap& map, const core::WorldPosition& eye, double block_m,
                      double pixel, std::vector<render::Line>& lines) {
   const std::size_t end = lines.size() + kMaxRiverLines;
   const glm::vec3 from_eye(core::offset_m(map.corner, eye, block_m));
-  const auto seen_m = static_cast<float>(kSeenSquares * map.near_m);
+  const auto seen_m = static_cast<float>(kSeenHalves * map.near_m);
   const auto lifted = [](glm::vec3 at) {
     const float away_m = glm::length(at);
     at.y += kLiftM + kLiftPerM * away_m;

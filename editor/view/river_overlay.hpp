@@ -14,9 +14,6 @@
 
 namespace psygen::editor {
 
-// The network of a world; null: it has none.
-std::shared_ptr<const models::RiverNetwork> network_of(const world::World& world);
-
 // Appends the lines of a map's shores and then of its channels relative to a camera, each the far
 // squares last, but not those farther than three halves of the finest square. Stops after
 // kMaxRiverLines, which leave room for the grid and the tools. `pixel`: the size of a pixel over

@@ -1,35 +1,19 @@
-// The water under the pointer: body, surface, depth, speed and discharge. Another thread casts the
-// ray, because the ground of a river network takes milliseconds a block. It drops questions while
-// one is in work, so ask again. Main thread, except for water_facts().
+// The water under the pointer. Another thread casts the ray, because the ground of a river network
+// takes milliseconds a block. It drops questions while one is in work, so ask again. Main thread.
 #pragma once
 
 #include <future>
 #include <memory>
-#include <optional>
 
 #include "editor/view/surface_shape.hpp"
 #include "engine/core/camera.hpp"
+#include "engine/world/water.hpp"
 
 namespace psygen::scene {
 class Scene;
 }
 
 namespace psygen::editor {
-
-// A body of water.
-enum class WaterKind : std::uint8_t { kSea, kLake, kRiver };
-
-// The water at a place.
-struct WaterFacts {
-  WaterKind kind = WaterKind::kSea;
-  double surface_m = 0, depth_m = 0;
-  double speed_m_s = 0;       // of the surface at the place
-  double discharge_m3_s = 0;  // of a river
-};
-
-// The water at a position, whose height is ignored; nullopt: dry, or outside the world. Takes
-// microseconds, and 30 with a river network and erosion. Any thread.
-std::optional<WaterFacts> water_facts(const world::World& world, const core::WorldPosition& at);
 
 // One per view; it keeps a copy of the world's ground.
 class WaterProbe {
@@ -39,11 +23,12 @@ class WaterProbe {
   WaterProbe& operator=(const WaterProbe&) = delete;
   ~WaterProbe();
 
-  // Asks for the water that the ray from the camera hits before any ground, within 4 km. Does
-  // nothing while a question is in work, or if it is the last one again. Takes microseconds.
+  // Asks for the water that the ray from the camera hits before any ground, within 4 km, if it is
+  // the same ray as at the last call. Does nothing while a question is in work, or if it is the
+  // last one again. Takes microseconds.
   void ask(const scene::Scene& scene, const core::CameraPose& pose, const glm::dvec3& direction);
-  // The newest answer; nullopt: no water. Takes microseconds.
-  const std::optional<WaterFacts>& answer();
+  // The newest answer; dry: the ray hits no water. Takes microseconds.
+  const world::WaterPoint& answer();
   // To be called after a change of the world.
   void note_world() { ground_.note_world(); }
   // True while another thread works.
@@ -51,12 +36,11 @@ class WaterProbe {
 
  private:
   KeptGround ground_{std::size_t{16} << 20};  // the other thread has a share of it
-  std::future<std::optional<WaterFacts>> next_;
-  // Of the last question:
-  std::shared_ptr<const BareGround> asked_ground_;
-  core::WorldPosition asked_eye_;
-  glm::dvec3 asked_direction_{0.0};
-  std::optional<WaterFacts> answer_;
+  std::future<world::WaterPoint> next_;
+  core::WorldPosition seen_eye_;  // the ray of the last call
+  glm::dvec3 seen_direction_{0.0};
+  std::shared_ptr<const BareGround> asked_ground_;  // of the last question about this ray
+  world::WaterPoint answer_;
 };
 
 }  // namespace psygen::editor

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "engine/core/headroom.hpp"
+#include "engine/core/task.hpp"
 #include "engine/render/hud_drawing.hpp"
 #include "engine/scene/facts/world_facts.hpp"
 #include "engine/scene/frame/input.hpp"
@@ -140,22 +140,15 @@ void WorldView::take_text() {
   if (prepared_.valid() || !std::exchange(text_is_new_, false)) return;
   since_prepared_ = since_text_;
   session_->set_files(handmade::files_with(session_->options().world_file, pictures_));
-  using Task = std::packaged_task<core::Result<scene::PreparedWorld>()>;
   cancelled_ = std::make_shared<std::atomic<bool>>(false);
-  const auto task = std::make_shared<Task>(session_->prepare_world(text_, cancelled_));
-  prepared_ = task->get_future();
-  auto thread = core::start_thread([task] { (*task)(); });
-  if (!thread) return (*task)();
-  thread->detach();
+  prepared_ = core::start_task(session_->prepare_world(text_, cancelled_));
   // Most worlds are ready before a frame of the previous world would be.
   prepared_.wait_for(std::chrono::milliseconds(kPreparedMs));
   take_prepared();
 }
 
 void WorldView::take_prepared() {
-  if (!prepared_.valid() ||
-      prepared_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
-    return;
+  if (!core::is_ready(prepared_)) return;
   auto prepared = prepared_.get();
   const auto ok = prepared ? session_->show_world(std::move(*prepared))
                            : core::Result<void>(tl::unexpected(prepared.error()));
@@ -258,10 +251,11 @@ void WorldView::write_overlays() {
   lines_.assign(grid.begin(), grid.end());
   const ViewProjection seen = view_projection();
   rivers_.follow(scene.world(), seen.pose.position);
-  const double pixel =
-      2 * std::tan(double{seen.projection.vertical_fov} / 2) / std::max(1U, seen.size.height);
-  if (rivers_.map() != nullptr)
+  if (rivers_.map() != nullptr) {
+    const double pixel =
+        2 * std::tan(double{seen.projection.vertical_fov} / 2) / std::max(1U, seen.size.height);
     add_river_lines(*rivers_.map(), seen.pose.position, seen.block_m, pixel, lines_);
+  }
   write_selection_box(seen);
   if (tool_ == nullptr) return;
   overlay_.set(tool_->marks(), scene.world());
@@ -336,9 +330,9 @@ std::optional<QPointF> WorldView::pixel_of(glm::dvec2 at_m) const {
   return QPointF(static_cast<double>(pixel->x), static_cast<double>(pixel->y)) / devicePixelRatio();
 }
 
-std::optional<WaterFacts> WorldView::water_under_pointer() {
+world::WaterPoint WorldView::water_under_pointer() {
   const auto pointer = input_.pointer();
-  if (!session_ || !pointer) return std::nullopt;
+  if (!session_ || !pointer) return {};
   const ViewProjection seen = view_projection();
   probe_.ask(session_->scene(), seen.pose,
              direction_of(*pointer, seen.size, seen.pose, seen.projection));

@@ -68,8 +68,8 @@ class WorldView final : public QWindow {
   // The river network as lines, in the view and in the cache map.
   RiverOverlay& rivers() { return rivers_; }
   const RiverOverlay& rivers() const { return rivers_; }
-  // The water under the pointer, a moment ago; nullopt: none, or the pointer is outside.
-  std::optional<WaterFacts> water_under_pointer();
+  // The water under the pointer, a moment ago; dry: there is none, or the pointer is outside.
+  world::WaterPoint water_under_pointer();
   // Gives the left mouse button to a tool and draws its marks; null: the button selects. The
   // previous tool cancels its unfinished action. The caller keeps the tool alive until it is
   // replaced.

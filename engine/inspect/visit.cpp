@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "engine/app/session.hpp"
-#include "engine/core/headroom.hpp"
 #include "engine/core/log.hpp"
+#include "engine/core/task.hpp"
 #include "engine/inspect/inspect.hpp"
 #include "engine/render/renderer.hpp"
 #include "engine/scene/settings.hpp"
@@ -190,13 +190,8 @@ WorldChange& WorldChange::operator=(WorldChange&& other) noexcept {
 }
 
 void WorldChange::start(app::Session& session, std::string text, const IsWanted& is_wanted) {
-  using Task = std::packaged_task<core::Result<scene::PreparedWorld>()>;
   cancelled_ = std::make_shared<std::atomic<bool>>(false);
-  const auto task = std::make_shared<Task>(session.prepare_world(std::move(text), cancelled_));
-  prepared_ = task->get_future();
-  auto thread = core::start_thread([task] { (*task)(); });
-  if (!thread) return (*task)();
-  thread->detach();
+  prepared_ = core::start_task(session.prepare_world(std::move(text), cancelled_));
   if (!session.scene().settings().virtual_time) return;
   while (prepared_.wait_for(kLookedAfter) != std::future_status::ready) {
     if (session.stopped() || !is_wanted()) *cancelled_ = true;
@@ -210,8 +205,7 @@ void WorldChange::cancel() {
 }
 
 bool WorldChange::is_ready() const {
-  return prepared_.valid() &&
-         prepared_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  return core::is_ready(prepared_);
 }
 
 std::optional<core::Result<void>> WorldChange::finish(app::Session& session) {

@@ -104,17 +104,6 @@ core::Result<world::WaterPoint> World::water(const core::WorldPosition& position
   return world::water_at(*world_, *at, cache_.ground(at->block).at(local).height_m);
 }
 
-core::Result<std::optional<double>> World::river_discharge_m3_s(
-    const core::WorldPosition& position) {
-  const core::RoundToNearest rounding;
-  follow_world();
-  const auto at = on_ground(position);
-  if (!at) return tl::unexpected(at.error());
-  const auto discharge = world::river_discharge_m3_s(*world_, *at);
-  if (!discharge || water(*at)->is_dry()) return std::nullopt;  // the block's ground comes last
-  return discharge;
-}
-
 // A ray from a normalised origin, with a direction of unit length.
 struct World::Course {
   core::WorldPosition origin;

@@ -102,11 +102,6 @@ class World {
   // Returns the water at a position, whose height is ignored. Fails as ground() does. As fast.
   core::Result<world::WaterPoint> water(const core::WorldPosition& at);
 
-  // Returns the discharge in m³/s of the river that covers a position, whose height is ignored;
-  // nothing where it is dry, in lakes and in the sea. Fails as ground() does. About 4 µs in a
-  // river.
-  core::Result<std::optional<double>> river_discharge_m3_s(const core::WorldPosition& at);
-
   // Returns the first hit of a ray. It hits the ground from either side, and a collider from
   // outside. A ray that begins on the ground (within GroundGrid::kTouchM) and does not rise above
   // it hits it at distance 0. The ground has no vertical sides at the border of a bounded world.

@@ -224,11 +224,14 @@ core::Result<PreparedWorld> prepare_world(world::World world, models::Registry r
     if (auto ok = core::check_cancelled(); !ok) return tl::unexpected(ok.error());
     world::place_models(facts.world, facts.registry, block, wanted, prepared.models[block]);
   }
-  if (!facts.world.shaped.network) return prepared;
-  // Makes the patches of the water of coarse nodes, which the main thread will read.
+  const models::RiverNetwork* const network = facts.world.network();
+  if (network == nullptr || network == snapshot.world.network()) return prepared;
+  // Makes the patches of coarse nodes, which the main thread will read.
   for (const visibility::NodeCoord& node : snapshot.nodes) {
-    if (auto ok = core::check_cancelled(); !ok) return tl::unexpected(ok.error());
-    static_cast<void>(world::water_parameters(facts.world, node.coord, node.level));
+    for (const auto& tile : models::ground_patches(node_terrain(facts.world, node))) {
+      if (auto ok = core::check_cancelled(); !ok) return tl::unexpected(ok.error());
+      static_cast<void>(network->patch(tile));
+    }
   }
   return prepared;
 }

@@ -203,12 +203,12 @@ class LakeMaker {
     for (const glm::dvec2& at_m : places) {
       const auto water = below_.water_over(at_m);
       if (!water) continue;
-      const bool of_network = water->body >= models::kFirstNetworkBody;
-      if (water->is_river && !of_network) continue;
-      return water_error(
-          key(), fmt::format("the lake overlaps {} near {:.1f}, {:.1f} m",
-                             of_network ? "a river or lake of the river network" : "another lake",
-                             at_m.x, at_m.y));
+      if (water->is_river() && !water->is_of_network()) continue;
+      return water_error(key(),
+                         fmt::format("the lake overlaps {} near {:.1f}, {:.1f} m",
+                                     water->is_of_network() ? "a river or lake of the river network"
+                                                            : "another lake",
+                                     at_m.x, at_m.y));
     }
     return {};
   }

@@ -202,10 +202,9 @@ class RiverMaker {
     s.bound_m = lowest_m - kFreeboardM - kFreeboard * s.depth_m;
   }
 
-  // True for a river that this one may not cross: of the world file, or a wider one of the network.
-  bool blocks(const models::BodySurface& water, std::size_t i) const {
-    const bool of_network = water.body >= models::kFirstNetworkBody;
-    return water.is_river && !(of_network && water.width_m <= 2 * samples_[i].half_m);
+  // True for a narrower river of the network, which this one takes up on its way.
+  bool takes_up(const models::BodySurface& water, std::size_t i) const {
+    return water.is_river() && water.is_of_network() && water.width_m <= 2 * samples_[i].half_m;
   }
   // Finds the lakes and rivers on the way. Other rivers may only be at its ends.
   tl::expected<void, WaterError> meet_others() {
@@ -213,8 +212,12 @@ class RiverMaker {
     for (std::size_t i = 0; i < n; ++i) {
       const auto water = below_.water_over(curve_[i].at_m);
       if (!water) continue;
-      samples_[i].in_river = blocks(*water, i);
-      samples_[i].in_lake = !samples_[i].in_river;
+      if (i > 0 && i + 1 < n && takes_up(*water, i)) {
+        samples_[i].bound_m = std::min(samples_[i].bound_m, water->surface_m);
+        continue;
+      }
+      samples_[i].in_river = water->is_river();
+      samples_[i].in_lake = !water->is_river();
       samples_[i].bound_m = water->surface_m;
     }
     std::size_t first = 0, end = n;
@@ -226,7 +229,7 @@ class RiverMaker {
     for (std::size_t i = first; i < end; ++i) {
       const auto at_m = river_before(i, first);
       if (!at_m) continue;
-      const bool of_network = below_.water_over(*at_m)->body >= models::kFirstNetworkBody;
+      const bool of_network = below_.water_over(*at_m)->is_of_network();
       return water_error(
           "points_m",
           fmt::format("the river crosses {} near {:.1f}, {:.1f} m; it may only begin or end in one",
@@ -245,7 +248,7 @@ class RiverMaker {
     for (int k = 1; k < steps; ++k) {
       const glm::dvec2 at_m = from_m + way * (static_cast<double>(k) / steps);
       const auto water = below_.water_over(at_m);
-      if (water && blocks(*water, i)) return at_m;
+      if (water && water->is_river() && !takes_up(*water, i)) return at_m;
     }
     return std::nullopt;
   }
@@ -320,7 +323,7 @@ class RiverMaker {
       const double run_m = curve_[after].along_m - curve_[before].along_m;
       p.fall = run_m > 0 ? (surface_[before] - surface_[after]) / run_m : 0;
       p.discharge_m3_s = discharge_m3_s(i);
-      p.speed_m_s = speed_m_s(i, p.discharge_m3_s);
+      p.speed_m_s = std::min(p.discharge_m3_s / models::cross_section_m2(p), kFastestM_S);
       const double drift_m = i > 0 ? curve_[i].along_m - curve_[i - 1].along_m : 0;
       foam = std::max(models::foam_of_fall(p.fall), foam - drift_m / 15);  // drifts 15 m
       p.foam = std::max(foam, 0.0);
@@ -335,11 +338,6 @@ class RiverMaker {
     // Manning: √0.001 / 0.035 times the mean depth to the power of 2/3.
     const double mean_m = samples_[i].depth_m * 2 / 3;
     return 0.9035 * models::exact_pow(mean_m, 2.0 / 3) * mean_m * width_m;
-  }
-  double speed_m_s(std::size_t i, double discharge) const {
-    const double width_m = 2 * samples_[i].half_m;
-    const double area_m2 = width_m * std::max(surface_[i] - bed_[i], 0.05) * 2 / 3;
-    return std::min(discharge / area_m2, kFastestM_S);
   }
 
   void warn_of_end() {

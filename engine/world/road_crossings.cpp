@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "engine/core/cancellation.hpp"
 #include "engine/world/curve.hpp"
 #include "engine/world/ground_below.hpp"
 #include "engine/world/water.hpp"
@@ -26,7 +27,7 @@ class WaterOnRoads {
     if (may_have_water_) {
       if (const auto water = below_.water_over(at_m)) return name_of(*water);
     }
-    return world_.water.exists() && is_below_sea(at) ? "the sea" : std::string();
+    return is_below_sea(at) ? "the sea" : std::string();
   }
 
  private:
@@ -35,22 +36,28 @@ class WaterOnRoads {
     if (block_ == block) return;
     block_ = block;
     may_have_water_ = layer_.ground.may_have_water(block, 0, block_m_);
-    roads_ = layer_.ground.shapes.roads_in(models::QuadCoord::of(block), block_m_);
+    if (!world_.water.exists()) return;
+    low_roads_ = layer_.ground.shapes.roads_in(models::QuadCoord::of(block), block_m_);
+    std::erase_if(low_roads_, [this](const models::GroundEdit* edit) {
+      return std::ranges::none_of(edit->road->segments, [this](const models::RoadSegment& s) {
+        return std::min(s.from_height_m, s.to_height_m) < world_.water.level_m;
+      });
+    });
   }
   bool is_below_sea(const core::WorldPosition& at) const {
     const glm::dvec2 local_m{at.local.x, at.local.z};
-    return std::ranges::any_of(roads_, [&](const models::GroundEdit* edit) {
+    return std::ranges::any_of(low_roads_, [&](const models::GroundEdit* edit) {
       const models::RoadEffect road = models::effect_of(
           *edit->road, models::from_origin_m(edit->origin(), at.block, local_m, block_m_));
       return road.weight >= 1 && road.height_m < world_.water.level_m;
     });
   }
   std::string name_of(const models::BodySurface& water) const {
-    if (water.body >= models::kFirstNetworkBody)
-      return water.is_river ? "a river of the network" : "a lake of the network";
+    if (water.is_of_network())
+      return water.is_river() ? "a river of the network" : "a lake of the network";
     const std::size_t lakes = world_.shaped.lakes.size(), number = water.body - kSea;
-    return water.is_river ? fmt::format("river {}", number - lakes)
-                          : fmt::format("lake {}", number);
+    return water.is_river() ? fmt::format("river {}", number - lakes)
+                            : fmt::format("lake {}", number);
   }
 
   const World& world_;
@@ -59,7 +66,7 @@ class WaterOnRoads {
   double block_m_;
   std::optional<core::BlockCoord> block_;
   bool may_have_water_ = false;
-  std::vector<const models::GroundEdit*> roads_;  // of the block
+  std::vector<const models::GroundEdit*> low_roads_;  // of the block, below the sea in part
 };
 
 // Neighbouring points of a road in the same water.
@@ -88,7 +95,8 @@ std::vector<std::string> road_crossings(const World& world, const models::EditLa
   std::vector<std::string> sentences;
   WaterOnRoads water(world, layer);
   for (std::size_t i = 0; i < world.shaped.roads.size(); ++i) {
-    if (!world.shaped.roads[i].enabled) continue;
+    if (!acts(world.shaped.roads[i])) continue;
+    if (!core::check_cancelled()) return sentences;
     const auto line = curve_through(world.shaped.roads[i].points_m, kCrossingStepM);
     const std::vector<Stretch> found = stretches_of(line, water);
     for (std::size_t k = 0; k < std::min(found.size(), kMaxCrossings); ++k) {

@@ -22,29 +22,23 @@ std::uint64_t with_points(std::uint64_t hash, const std::vector<glm::dvec2>& poi
   return hash;
 }
 
-// The river or lake that owns a place, of a layer; nothing: it is dry, or the sea stands higher.
-std::optional<models::BodySurface> body_over(const World& world, const models::EditLayer* layer,
-                                             const core::WorldPosition& at) {
-  if (layer == nullptr) return std::nullopt;
-  const double block_m = world.block_size_m();
-  const core::WorldPosition place = core::normalised(at, block_m);
-  const auto body = layer->ground.water_over(place.block, {place.local.x, place.local.z}, block_m);
-  if (body && world.water.exists() && body->surface_m < world.water.level_m) return std::nullopt;
-  return body;
-}
-
 // The surface over a place, of a layer's rivers and lakes and of the sea.
 std::optional<WaterSurface> surface_over(const World& world, const models::EditLayer* layer,
                                          const core::WorldPosition& at) {
   const core::RoundToNearest rounding;
-  const auto body = body_over(world, layer, at);
-  if (!body) return sea_surface(world);
+  if (layer == nullptr) return sea_surface(world);
+  const double block_m = world.block_size_m();
+  const core::WorldPosition place = core::normalised(at, block_m);
+  const auto body = layer->ground.water_over(place.block, {place.local.x, place.local.z}, block_m);
+  if (!body || (world.water.exists() && body->surface_m < world.water.level_m))
+    return sea_surface(world);
   const double steep = std::sqrt(1 + body->slope.x * body->slope.x + body->slope.y * body->slope.y);
   return WaterSurface{
       .surface_m = body->surface_m,
       .normal = glm::vec3(-body->slope.x, 1, -body->slope.y) / static_cast<float>(steep),
       .flow_m_s = glm::vec2(body->flow_m_s),
       .foam = static_cast<float>(body->foam),
+      .discharge_m3_s = body->discharge_m3_s,
       .body = body->body};
 }
 
@@ -69,13 +63,6 @@ std::optional<WaterSurface> sea_surface(const World& world) {
   sea.surface_m = world.water.level_m;
   sea.body = kSea;
   return sea;
-}
-
-std::optional<double> river_discharge_m3_s(const World& world, const core::WorldPosition& at) {
-  const core::RoundToNearest rounding;
-  const auto body = body_over(world, world.layer().get(), at);
-  if (!body || !body->is_river) return std::nullopt;
-  return body->discharge_m3_s;
 }
 
 std::uint64_t bodies_hash_in(const World& world, core::BlockCoord block) {
@@ -129,6 +116,7 @@ WaterPoint water_at(const World& world, const core::WorldPosition& at, double gr
           .normal = water->normal,
           .flow_m_s = water->flow_m_s,
           .foam = water->foam,
+          .discharge_m3_s = water->discharge_m3_s,
           .body = water->body};
 }
 

@@ -29,6 +29,9 @@ struct WaterSurface {
   glm::vec3 normal{0, 1, 0};  // unit length, upwards
   glm::vec2 flow_m_s{0.0F};   // velocity along x and z in metres a second; 0: still
   float foam = 0;             // fraction of the surface that foams, 0 … 1
+  // Of a river: in the file, by its width and depth, or by the drainage area of a river network
+  // (models::network::discharge_m3_s()). Nothing: a lake, or the sea.
+  std::optional<double> discharge_m3_s = std::nullopt;
   WaterBody body = kNoWater;  // never kNoWater where a function returns a surface
   // Depth above ground of this height, in metres; 0: the ground is dry.
   double depth_m(double ground_m) const { return surface_m > ground_m ? surface_m - ground_m : 0; }
@@ -45,6 +48,7 @@ struct WaterPoint {
   glm::vec3 normal{0, 1, 0};
   glm::vec2 flow_m_s{0.0F};  // velocity along x and z in metres a second
   float foam = 0;            // fraction of the surface that foams, 0 … 1
+  std::optional<double> discharge_m3_s = std::nullopt;  // of a river
   WaterBody body = kNoWater;
   bool is_dry() const { return body == kNoWater; }
 };
@@ -71,12 +75,6 @@ WaterPoint water_at(const World& world, const core::WorldPosition& at, double gr
 // with a river network and erosion.
 // query::World::water() answers faster, for many places of a block.
 WaterPoint water_at(const World& world, const core::WorldPosition& at);
-
-// Returns the discharge in m³/s of the river whose water lies over a place, whether the ground
-// there is lower or higher; nothing: none does, but a lake or the sea may. That of a `[[river]]` is
-// in the file or follows from width and depth, that of a river network from the drainage area
-// (models::network::discharge_m3_s()). As fast as water_surface().
-std::optional<double> river_discharge_m3_s(const World& world, const core::WorldPosition& at);
 
 // A hash of the lakes and rivers of the world's function that reach a block; 0: none does.
 std::uint64_t bodies_hash_in(const World& world, core::BlockCoord block);

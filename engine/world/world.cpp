@@ -81,6 +81,10 @@ bool World::has_costly_heights() const {
   return shaped.layer != nullptr && shaped.layer->ground.has_fixed_part();
 }
 
+const models::RiverNetwork* World::network() const {
+  return layer() != nullptr ? layer()->ground.network.get() : nullptr;
+}
+
 bool World::contains(core::BlockCoord block) const {
   const auto inside = [](std::int32_t index, std::int64_t count) {
     return count == 0 || (index >= 0 && index < count);

@@ -21,6 +21,10 @@
 #include "engine/world/places.hpp"
 #include "engine/world/shaped_ground.hpp"
 
+namespace psygen::models {
+class RiverNetwork;
+}
+
 namespace psygen::world {
 
 inline constexpr int kWorldFormat = 1;  // version of the file format
@@ -190,6 +194,9 @@ struct World {
   const std::shared_ptr<const models::EditLayer>& layer() const {
     return edits ? edits : shaped.layer;
   }
+
+  // The river network of the ground; null: none.
+  const models::RiverNetwork* network() const;
 
   double block_size_m() const;  // metres along one side of a block
   double cell_m() const;        // distance of neighbouring terrain vertices

@@ -53,7 +53,6 @@ std::optional<BodySurface> GroundStack::water_over(core::BlockCoord block, glm::
   surface.surface_m = double{found->water.surface_m};
   surface.flow_m_s = glm::dvec2(found->water.flow_m_s);
   surface.body = kFirstNetworkBody | (found->water.body & ~kFirstNetworkBody);
-  surface.is_river = found->channel.has_value();
   if (found->channel) {
     surface.discharge_m3_s = found->channel->discharge_m3_s;
     surface.width_m = found->channel->width_m;

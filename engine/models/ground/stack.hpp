@@ -17,10 +17,6 @@
 
 namespace psygen::models {
 
-// Bodies of a network have names from here on. Those of world files lie below 2^31, and those that
-// games add from there on.
-inline constexpr std::uint32_t kFirstNetworkBody = 0xC0000000U;
-
 struct GroundStack {
   std::shared_ptr<const RiverNetwork> network;  // takes the place of the noise; null: none
   std::shared_ptr<const Erosion> erosion;       // of the world file; null: none

@@ -180,7 +180,6 @@ std::optional<BodySurface> surface_of(const RiverPiece& river, glm::dvec2 place_
   if (foot->away_m > half_m + river.edge_m) return std::nullopt;
   BodySurface water;
   water.body = river.body;
-  water.is_river = true;
   water.surface_m = foot->value(&RiverPoint::surface_m);
   water.foam = foot->value(&RiverPoint::foam);
   water.discharge_m3_s = foot->value(&RiverPoint::discharge_m3_s);

@@ -28,6 +28,10 @@ struct RiverPoint {
   double foam = 0;             // 0 … 1
   double discharge_m3_s = 0;   // tells, but shapes nothing
 };
+// The area of the water across a river; its depth is a parabola.
+inline double cross_section_m2(const RiverPoint& p) {
+  return 2 * p.half_width_m * std::max(p.surface_m - p.bed_m, 0.05) * 2 / 3;
+}
 
 // A segment of the same river that may be nearer to a place than the piece's own ones.
 struct RiverNeighbour {
@@ -91,6 +95,10 @@ void seal(LakePiece& lake);
 double shaped_by(const RiverPiece& river, double ground_m, glm::dvec2 place_m);
 double shaped_by(const LakePiece& lake, double ground_m, glm::dvec2 place_m);
 
+// Bodies of a network have names from here on. Those of world files lie below 2^31, and those that
+// games add from there on.
+inline constexpr std::uint32_t kFirstNetworkBody = 0xC0000000U;
+
 // The surface of a river or a lake over a place.
 struct BodySurface {
   double surface_m = 0;
@@ -98,12 +106,14 @@ struct BodySurface {
   glm::dvec2 flow_m_s{0.0};  // along x and z
   double foam = 0;           // 0 … 1
   std::uint32_t body = 0;
-  bool is_river = false;                   // else a lake
-  double discharge_m3_s = 0, width_m = 0;  // of a river
+  std::optional<double> discharge_m3_s = std::nullopt;  // of a river
+  double width_m = 0;                                   // of a river
   // Distance from the middle in widths of the body: 0 in the middle of a river, 0.5 at the border
   // of the water, −1 everywhere inside the outline of a lake.
   double widths = 0;
 
+  bool is_river() const { return discharge_m3_s.has_value(); }  // else a lake
+  bool is_of_network() const { return body >= kFirstNetworkBody; }
   // True if this body owns a place that both reach: the one that is nearer in its widths, then the
   // lower one, then the one of the smaller number.
   bool owns_before(const BodySurface& other) const;

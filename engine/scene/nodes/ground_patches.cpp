@@ -19,10 +19,6 @@ using models::network::TileKey;
 // view.
 constexpr auto kGroup = synthesis::RankGroup::kDrawn;
 
-const models::RiverNetwork* network_of(const world::World& world) {
-  return world.layer() != nullptr ? world.layer()->ground.network.get() : nullptr;
-}
-
 // The largest distance at which models look for water, in cells.
 std::int64_t near_water_cells(const world::World& world) {
   double farthest_m = 0;
@@ -50,7 +46,7 @@ models::Parameters parameters_of(const TileKey& tile, const WorldFacts& facts) {
 
 void GroundPatches::begin(const WorldFacts& facts) {
   wanted_.clear();
-  const models::RiverNetwork* const network = network_of(facts.world);
+  const models::RiverNetwork* const network = facts.world.network();
   const std::uint64_t identity = network != nullptr ? network->identity() : 0;
   if (identity != network_) patches_.clear();
   network_ = identity;

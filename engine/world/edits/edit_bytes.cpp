@@ -24,6 +24,8 @@ constexpr std::uint32_t kMagic = 0x44454750;  // "PGED"
 // This bit of its change marks an edit of the ground that is not whole. Programs that do not know
 // it reject the block.
 constexpr std::uint8_t kPart = 0x80;
+// This bit marks a river whose points have their discharge. The others have it by speed and width.
+constexpr std::uint8_t kDischarge = 0x40;
 using Bytes = std::vector<std::byte>;
 
 tl::unexpected<core::Error> broken(core::BlockCoord block, std::string_view why) {
@@ -108,7 +110,7 @@ class BlockReader {
       GroundEdit e;
       e.id = in_.get<std::uint32_t>();
       const auto marked = in_.get<std::uint8_t>();
-      const auto change = static_cast<std::uint8_t>(marked & ~kPart);
+      const auto change = static_cast<std::uint8_t>(marked & ~(kPart | kDischarge));
       if (change > static_cast<std::uint8_t>(models::GroundChange::kLake) ||
           change == static_cast<std::uint8_t>(models::GroundChange::kRoad))
         return wrong(fmt::format("{} is not a type of ground edit", change));
@@ -130,7 +132,8 @@ class BlockReader {
         map->heights_m = in_.get_all<float>(std::size_t{map->columns} * map->rows);
         e.map = std::move(map);
       }
-      if (e.change == models::GroundChange::kRiver) e.river = read_river();
+      if (e.change == models::GroundChange::kRiver)
+        e.river = read_river((marked & kDischarge) != 0);
       if (e.change == models::GroundChange::kLake) e.lake = read_lake();
       if (in_.failed()) return {};
       if (!is_next_id(e.id, i > 0 ? edits.ground.back()->id : 0))
@@ -145,14 +148,18 @@ class BlockReader {
     (in_.read(vectors.x, vectors.y), ...);
   }
 
-  std::shared_ptr<const models::RiverPiece> read_river() {
+  std::shared_ptr<const models::RiverPiece> read_river(bool has_discharge) {
     auto river = std::make_shared<models::RiverPiece>();
     core::WorldPosition& o = river->origin;
     in_.read(o.block.x, o.block.z, o.local.x, o.local.z, river->body, river->edge_m);
-    river->points.resize(in_.get_count(11 * sizeof(double)));
+    river->points.resize(in_.get_count((has_discharge ? 12 : 11) * sizeof(double)));
     for (models::RiverPoint& p : river->points) {
       read_vectors(p.at_m, p.direction);
       in_.read(p.half_width_m, p.surface_m, p.bed_m, p.bank_m, p.speed_m_s, p.fall, p.foam);
+      if (has_discharge)
+        in_.read(p.discharge_m3_s);
+      else
+        p.discharge_m3_s = p.speed_m_s * models::cross_section_m2(p);
     }
     river->near.resize(in_.get_count(4 * sizeof(double) + 1));
     for (models::RiverNeighbour& n : river->near) {
@@ -258,7 +265,8 @@ void put_river(const models::RiverPiece& river, Bytes& out) {
             static_cast<std::uint32_t>(river.points.size()));
   for (const models::RiverPoint& p : river.points) {
     put_vectors(out, p.at_m, p.direction);
-    core::put(out, p.half_width_m, p.surface_m, p.bed_m, p.bank_m, p.speed_m_s, p.fall, p.foam);
+    core::put(out, p.half_width_m, p.surface_m, p.bed_m, p.bank_m, p.speed_m_s, p.fall, p.foam,
+              p.discharge_m3_s);
   }
   core::put(out, static_cast<std::uint32_t>(river.near.size()));
   for (const models::RiverNeighbour& n : river.near) {
@@ -279,8 +287,8 @@ void put_lake(const models::LakePiece& lake, Bytes& out) {
 }
 
 void put_ground(const GroundEdit& e, Bytes& out) {
-  const auto change = static_cast<std::uint8_t>(e.change);
-  core::put(out, e.id, e.is_whole() ? change : static_cast<std::uint8_t>(change | kPart),
+  const int marks = (e.is_whole() ? 0 : kPart) | (e.river ? kDischarge : 0);
+  core::put(out, e.id, static_cast<std::uint8_t>(static_cast<int>(e.change) | marks),
             static_cast<std::uint8_t>(e.square ? 1 : 0), e.centre.local.x, e.centre.local.z,
             e.radius_m, e.falloff, e.height_m);
   if (!e.is_whole()) core::put(out, e.strength, static_cast<std::uint8_t>(e.blend));

@@ -27,7 +27,7 @@ const World& network_world() {
 
 RiverMap map_of(const World& world, glm::dvec2 at_m, glm::dvec2 blocks = glm::dvec2(0.0)) {
   const std::atomic<bool> never{false};
-  return make_river_map(*network_of(world), world.position(at_m), blocks, never);
+  return make_river_map(*world.network(), world.position(at_m), blocks, never);
 }
 
 core::WorldPosition place(const World& world, const RiverMap& map, const glm::vec3& from_corner) {
@@ -49,8 +49,8 @@ TEST(RiverMap, ItsNearChannelsLieInTheRiversOfTheWorld) {
     ++wet;
     EXPECT_EQ(channel.width_px, river_width_px(double{channel.discharge_m3_s}));
     EXPECT_NEAR(water->surface_m, double{middle.y}, 2);
-    const auto discharge = world::river_discharge_m3_s(world, at);
-    if (discharge && std::abs(*discharge - double{channel.discharge_m3_s}) < 1e-6) ++equal;
+    const double discharge_m3_s = water->discharge_m3_s.value_or(0);
+    if (std::abs(discharge_m3_s - double{channel.discharge_m3_s}) < 1e-6) ++equal;
   }
   EXPECT_GT(near, 300U);
   EXPECT_GT(20 * wet, 19 * near);
@@ -110,7 +110,7 @@ TEST(RiverMap, OfABoundedWorldEndsAtItsBorder) {
 
 TEST(RiverMap, ACancelledOneIsEmpty) {
   const std::atomic<bool> always{true};
-  const RiverMap map = make_river_map(*network_of(network_world()), {}, glm::dvec2(0.0), always);
+  const RiverMap map = make_river_map(*network_world().network(), {}, glm::dvec2(0.0), always);
   EXPECT_TRUE(map.channels.empty() && map.shores.empty() && map.divides.empty());
 }
 
@@ -282,27 +282,6 @@ TEST(RiverOverlay, MeasuresMovesFromThePlaceOfItsMap) {
   }
   follow(overlay, world, world.position({at_m - quarter_m - 2, at_m}));
   EXPECT_NE(overlay.map(), before);
-}
-
-TEST(WaterFacts, TellBodyDepthSpeedAndDischarge) {
-  const World& world = world::testing::river_world();
-  const auto at = [&](double x_m, double z_m) {
-    return water_facts(world, world.position({x_m, z_m}));
-  };
-  const auto river = at(2020, 1735), lake = at(1750, 1670), sea = at(1545, 1655);
-  ASSERT_TRUE(river && lake && sea);
-  EXPECT_EQ(river->kind, WaterKind::kRiver);
-  EXPECT_NEAR(river->depth_m, 0.6, 0.3);
-  EXPECT_GT(river->speed_m_s, 0.1);
-  EXPECT_EQ(river->discharge_m3_s,
-            *world::river_discharge_m3_s(world, world.position({2020, 1735})));
-  EXPECT_EQ(lake->kind, WaterKind::kLake);
-  EXPECT_GT(lake->surface_m, world.water.level_m);
-  EXPECT_EQ(lake->discharge_m3_s, 0);
-  EXPECT_EQ(sea->kind, WaterKind::kSea);
-  EXPECT_EQ(sea->surface_m, world.water.level_m);
-  EXPECT_FALSE(at(2100, 1200)) << "dry";
-  EXPECT_FALSE(at(-50, 0)) << "outside";
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // The overlay of a river network, the water under the pointer, and warnings of roads in a window.
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 
 #include <QDockWidget>
 #include <QLabel>
@@ -8,11 +9,13 @@
 
 #include "editor/panels/cache_map.hpp"
 #include "editor/panels/message_log.hpp"
+#include "editor/panels/water_text.hpp"
 #include "engine/scene/statistics.hpp"
 #include "engine/synthesis/mesh_supply.hpp"
 #include "engine/world/water.hpp"
 #include "tests/editor/window/window_fixture.hpp"
 #include "tests/engine/world/network_world.hpp"
+#include "tests/engine/world/river_world.hpp"
 
 namespace psygen::editor {
 namespace {
@@ -28,8 +31,7 @@ class RiversInView : public EditorWindow {
     for (int i = 0; i < 400 * 400 && !river_; ++i) {
       const core::WorldPosition at =
           core::normalised({{20, 20}, {2.0 * (i % 400), 0, 2.0 * (i / 400)}}, block_m);
-      const auto discharge = world::river_discharge_m3_s(world, at);
-      if (discharge && *discharge > 0.03 && !world::water_at(world, at).is_dry()) river_ = at;
+      if (world::water_at(world, at).discharge_m3_s.value_or(0) > 0.03) river_ = at;
     }
     ASSERT_TRUE(river_);
     core::CameraPose pose;
@@ -129,6 +131,18 @@ TEST_F(RiversInView, TheStatusBarTellsTheWaterUnderThePointer) {
   ASSERT_TRUE(QTest::qWaitFor([&] { return !label->text().isEmpty(); }, kMaxMs));
   EXPECT_TRUE(label->text().startsWith("River: surface ")) << label->text().toStdString();
   EXPECT_TRUE(label->text().endsWith(" m³/s")) << label->text().toStdString();
+}
+
+TEST(WaterText, TellsBodyDepthAndOfRiversSpeedAndDischarge) {
+  const world::World& world = world::testing::river_world();
+  const auto text = [&](double x_m, double z_m) {
+    return water_text(world::water_at(world, world.position({x_m, z_m}))).toStdString();
+  };
+  const std::string depth = ": surface [0-9]+\\.[0-9] m, [0-9]+\\.[0-9] m deep";
+  EXPECT_THAT(text(2020, 1735), ::testing::MatchesRegex("River" + depth + ", .* m/s, .* m³/s"));
+  EXPECT_THAT(text(1750, 1670), ::testing::MatchesRegex("Lake" + depth));
+  EXPECT_THAT(text(1545, 1655), ::testing::MatchesRegex("Sea" + depth));
+  EXPECT_EQ(text(2100, 1200), "") << "dry";
 }
 
 TEST_F(RiversInView, ARoadThroughARiverGetsOneMessage) {

@@ -153,34 +153,30 @@ TEST_F(WaterQuery, NoPathLeadsThroughAFastCurrent) {
 TEST_F(WaterQuery, TellsTheDischargeOfRiversAlone) {
   std::size_t rivers = 0, still = 0, dry = 0;
   for (int i = 0; i < 3000; ++i) {
-    const core::WorldPosition place = at({1500 + 0.25 * (i % 1500), 1600 + 0.11 * i / 2}, 0);
-    const auto found = query_.river_discharge_m3_s(place);
-    const auto water = query_.water(place);
-    ASSERT_TRUE(found && water);
+    const auto water = query_.water(at({1500 + 0.25 * (i % 1500), 1600 + 0.11 * i / 2}, 0));
+    ASSERT_TRUE(water);
     const bool is_river = water->body >= world::testing::kTheRiver;
-    ASSERT_EQ(found->has_value(), is_river && !water->is_dry());
-    ASSERT_EQ(*found, is_river ? world::river_discharge_m3_s(loaded_.world, place) : std::nullopt);
+    ASSERT_EQ(water->discharge_m3_s.has_value(), is_river);
     ++(water->is_dry() ? dry : is_river ? rivers : still);
   }
   EXPECT_GT(rivers, 30U);
   EXPECT_GT(still, 100U);
   EXPECT_GT(dry, 100U);
-  EXPECT_FALSE(query_.river_discharge_m3_s(at({-40, 0}, 0))) << "outside the world";
 }
 
-TEST_F(WaterQuery, TheFirstQuestionForADischargeFollowsTheWorld) {
+TEST_F(WaterQuery, TheFirstQuestionFollowsTheWorld) {
   // From block (0, 0) the size of blocks decides which place that is.
   const core::WorldPosition place{{0, 0}, {1960, 0, 1752}};
-  const auto before = query_.river_discharge_m3_s(place);
-  ASSERT_TRUE(before && before->has_value());
+  const auto before = query_.water(place);
+  ASSERT_TRUE(before && before->discharge_m3_s);
   Loaded other =
       Loaded::parsed(replaced(replaced(river_text(), "block_vertices = 65", "block_vertices = 33"),
                               "blocks = [48, 48]", "blocks = [96, 96]"));
   other.world.revision.number = loaded_.world.revision.number + 1;
   std::swap(loaded_, other);
-  const auto after = query_.river_discharge_m3_s(place);
-  ASSERT_TRUE(after && after->has_value());
-  EXPECT_NEAR(after->value(), before->value(), 0.3 * before->value());
+  const auto after = query_.water(place);
+  ASSERT_TRUE(after && after->discharge_m3_s);
+  EXPECT_NEAR(*after->discharge_m3_s, *before->discharge_m3_s, 0.3 * *before->discharge_m3_s);
 }
 
 // Places in the water of rivers, and rays that come down to them from 400 m away.
@@ -193,10 +189,10 @@ TEST(WaterQueryOfANetwork, ARayOverDryBlocksFindsTheRiverBeyond) {
   int rays = 0, over_dry_blocks = 0;
   for (int i = 0; i < 40'000 && rays < 200; ++i) {
     const core::WorldPosition river = world.position({7.0 * (i % 200), 7.0 * (i / 200)});
-    const auto discharge = query.river_discharge_m3_s(river);
-    if (!discharge || !discharge->has_value()) continue;
+    const auto water = query.water(river);
+    if (!water || !water->discharge_m3_s) continue;
     const double angle = 0.7 * ++rays;
-    const glm::dvec3 from{kAwayM * std::cos(angle), query.water(river)->surface_m + kUpM,
+    const glm::dvec3 from{kAwayM * std::cos(angle), water->surface_m + kUpM,
                           kAwayM * std::sin(angle)};
     Ray ray{.origin = core::normalised({river.block, river.local + from}, block_m),
             .direction = {-from.x, -kUpM, -from.z},

@@ -233,7 +233,7 @@ NetworkBody wet_place(const World& world, bool is_river) {
       const core::WorldPosition at = world.position({x_m, z_m});
       const auto surface = water_surface(world, at);
       if (!surface || surface->body < models::kFirstNetworkBody) continue;
-      if (river_discharge_m3_s(world, at).has_value() != is_river) continue;
+      if (surface->discharge_m3_s.has_value() != is_river) continue;
       const glm::dvec2 flow(surface->flow_m_s);
       const double speed = std::hypot(flow.x, flow.y);
       return {{x_m, z_m}, speed > 0 ? glm::dvec2(-flow.y, flow.x) / speed : glm::dvec2(1, 0)};
@@ -264,7 +264,24 @@ TEST(NetworkGround, RiversMadeByHandMayEndInWiderOnesOfTheNetworkButNotCrossThem
               HasSubstr("the river crosses a wider river of the network near"));
   EXPECT_EQ(error(river_between(from_m, river_m, 0.9 * width_m)), "");
   EXPECT_EQ(error(river_between(river_m, to_m, 0.9 * width_m)), "");
-  EXPECT_EQ(error(river_between(from_m, to_m, 1.1 * width_m)), "") << "it takes up narrower ones";
+  const std::string taking = river_between(from_m, to_m, 1.1 * width_m);
+  ASSERT_EQ(error(taking), "") << "it takes up narrower ones";
+  const World crossed = parsed(network_text() + taking);
+  const auto surface_of = [](const World& world, glm::dvec2 at_m) {
+    const auto water = water_surface(world, world.position(at_m));
+    EXPECT_TRUE(water);
+    return water.value_or(WaterSurface());
+  };
+  const WaterSurface taken = surface_of(crossed, river_m);
+  EXPECT_LT(taken.body, models::kFirstNetworkBody);
+  EXPECT_LE(taken.surface_m, surface_of(plain, river_m).surface_m) << "the narrower one flows in";
+  double above_m = surface_of(crossed, river_m - 50.0 * across).surface_m;
+  for (double along_m = -40; along_m <= 50; along_m += 10) {
+    const double here_m = surface_of(crossed, river_m + along_m * across).surface_m;
+    EXPECT_LE(here_m, above_m) << along_m;
+    EXPECT_TRUE(along_m >= 0 || here_m < above_m) << "it falls down the slope, " << along_m;
+    above_m = here_m;
+  }
 }
 
 // Rivers lie at many heights, above their beds and below their banks, and flow.

@@ -317,7 +317,8 @@ TEST(River, TellsItsDischarge) {
   const World& world = river_world();
   const auto curve = river_curve(world, world.shaped.rivers[0]);
   const auto discharge_at = [&](const World& of, glm::dvec2 at_m) {
-    return river_discharge_m3_s(of, of.position(at_m));
+    const auto surface = water_surface(of, of.position(at_m));
+    return surface ? surface->discharge_m3_s : std::nullopt;
   };
   int rivers = 0, lakes = 0;
   for (int i = 0; i <= 500; ++i) {

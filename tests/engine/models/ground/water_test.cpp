@@ -78,7 +78,7 @@ TEST(RiverPiece, FlowsFastestInTheMiddleAndDownItsSlope) {
   EXPECT_NEAR(middle->surface_m, 29.7, 1e-12);
   EXPECT_EQ(middle->slope, glm::dvec2(-0.01, 0));
   EXPECT_EQ(middle->body, 7U);
-  EXPECT_TRUE(middle->is_river);
+  EXPECT_TRUE(middle->is_river());
   EXPECT_EQ(middle->widths, 0);
   EXPECT_EQ(border->widths, 0.5);
   EXPECT_TRUE(surface_of(river, {30, 5.9}));
