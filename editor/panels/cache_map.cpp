@@ -26,6 +26,7 @@ namespace psygen::editor {
 namespace {
 
 constexpr int kMapUpdateMs = 250;
+constexpr int kPictureMarginPx = 128;
 constexpr double kMinRadiusM = 100, kMaxRadiusM = 30'000;
 constexpr double kOldestPower = 3;  // log10 of seconds: older meshes are blue
 const QColor kNotLoaded(90, 90, 96), kFailed(190, 60, 190), kOutdated(230, 150, 40),
@@ -225,42 +226,45 @@ void CacheMap::paintEvent(QPaintEvent*) {
   painter.drawText(left - QPointF(0, 5), tr("%1 m").arg(bar_m));
 }
 
-// The origin of the painter is the camera. Lines of one look are drawn together.
-void CacheMap::paint_rivers(QPainter& painter) const {
-  painter.save();
-  painter.setRenderHint(QPainter::Antialiasing);
-  // A shade, so that all colours of nodes leave the lines readable.
-  const QRectF all(-width() / 2.0, -height() / 2.0, width(), height());
-  painter.fillRect(all, QColor(12, 20, 34, 150));
+// The origin of the painter is the camera. A shade leaves lines readable on all colours of nodes.
+void CacheMap::paint_rivers(QPainter& painter) {
+  const QPointF low(-width() / 2.0, -height() / 2.0), margin(kPictureMarginPx, kPictureMarginPx);
+  painter.fillRect(QRectF(low, size()), QColor(12, 20, 34, 150));
+  const QPointF corner = QPointF(rivers_from_camera_m_.x, rivers_from_camera_m_.y) * pixels_per_m();
+  const QPointF moved = corner - picture_.corner;
+  if (picture_.rivers != rivers_ || picture_.scale != pixels_per_m() || picture_.size != size() ||
+      std::max(std::abs(moved.x()), std::abs(moved.y())) > kPictureMarginPx)
+    draw_rivers(corner);
+  painter.drawPixmap(low - margin + corner - picture_.corner, picture_.pixels);
+}
+
+// Lines of one look are drawn together. Takes milliseconds.
+void CacheMap::draw_rivers(QPointF corner) {
+  const QSize wide = size() + QSize(2 * kPictureMarginPx, 2 * kPictureMarginPx);
   const double scale = pixels_per_m();
-  const auto point = [&](const glm::vec3& at) {
-    return QPointF(rivers_from_camera_m_.x + double{at.x}, rivers_from_camera_m_.y + double{at.z}) *
-           scale;
+  picture_ = {rivers_, scale, size(), corner, QPixmap(wide * devicePixelRatioF())};
+  picture_.pixels.setDevicePixelRatio(devicePixelRatioF());
+  picture_.pixels.fill(Qt::transparent);
+  QPainter painter(&picture_.pixels);
+  painter.setRenderHint(QPainter::Antialiasing);
+  painter.translate(corner + QPointF(wide.width() / 2.0, wide.height() / 2.0));
+  const auto draw = [&](const std::vector<RiverMap::Line>& lines, const glm::vec3& colour,
+                        double width_px, Qt::PenStyle style = Qt::SolidLine) {
+    std::vector<QLineF> shown;
+    for (const auto& [from, to] : lines)
+      shown.emplace_back(QPointF(from.x, from.z) * scale, QPointF(to.x, to.z) * scale);
+    painter.setPen(
+        QPen(QColor::fromRgbF(colour.x, colour.y, colour.z), width_px, style, Qt::RoundCap));
+    painter.drawLines(shown.data(), static_cast<int>(shown.size()));
   };
-  const auto add = [&](const RiverMap::Line& line, std::vector<QLineF>& lines) {
-    const QLineF shown(point(line.from), point(line.to));
-    if (QRectF(shown.p1(), shown.p2()).normalized().adjusted(-1, -1, 1, 1).intersects(all))
-      lines.push_back(shown);
-  };
-  const auto draw = [&](const std::vector<QLineF>& lines, const glm::vec3& colour, double width_px,
-                        Qt::PenStyle style = Qt::SolidLine) {
-    const QColor shown = QColor::fromRgbF(colour.x, colour.y, colour.z);
-    painter.setPen(QPen(shown, width_px, style, Qt::RoundCap));
-    painter.drawLines(lines.data(), static_cast<int>(lines.size()));
-  };
-  std::vector<QLineF> divides, shores;
-  for (const RiverMap::Line& divide : rivers_->divides)
-    add(divide, divides);
-  for (const RiverMap::Line& shore : rivers_->shores)
-    add(shore, shores);
-  draw(divides, kDivideColour, 1, Qt::DotLine);
-  draw(shores, kShoreColour, 1);
-  std::array<std::vector<QLineF>, kMaxRiverPx + 1> channels;
-  for (const RiverMap::Channel& channel : rivers_->channels)
-    add(channel.line, channels[static_cast<std::size_t>(channel.width_px)]);
-  for (int px = 1; px <= kMaxRiverPx; ++px)
-    draw(channels[static_cast<std::size_t>(px)], river_colour(px), 0.6 * px + 0.2);
-  painter.restore();
+  draw(rivers_->divides, kDivideColour, 1, Qt::DotLine);
+  draw(rivers_->shores, kShoreColour, 1);
+  for (int px = 1; px <= kMaxRiverPx; ++px) {
+    std::vector<RiverMap::Line> lines;
+    for (const RiverMap::Channel& channel : rivers_->channels)
+      if (channel.width_px == px) lines.push_back(channel.line);
+    draw(lines, river_colour(px), 0.6 * px + 0.2);
+  }
 }
 
 const CacheMap::Cell* CacheMap::cell_at(QPointF place) const {

@@ -2,6 +2,7 @@
 // explains the state of a node. Reads the scene, changes nothing. Main thread.
 #pragma once
 
+#include <QPixmap>
 #include <QWidget>
 #include <cstdint>
 #include <memory>
@@ -67,7 +68,8 @@ class CacheMap final : public QWidget {
   QString tool_tip_of(const Cell& cell) const;
   const Cell* cell_at(QPointF place) const;
   double pixels_per_m() const;
-  void paint_rivers(QPainter& painter) const;
+  void paint_rivers(QPainter& painter);
+  void draw_rivers(QPointF corner);
 
   struct KnownMesh {
     synthesis::MeshHandle mesh;
@@ -77,6 +79,15 @@ class CacheMap final : public QWidget {
   std::unordered_map<std::uint64_t, KnownMesh> known_;  // by entity of a node
   std::shared_ptr<const RiverMap> rivers_;
   glm::dvec2 rivers_from_camera_m_{0.0};
+  // The rivers as they were drawn last, with a margin for a camera that moves.
+  struct RiverPicture {
+    std::shared_ptr<const RiverMap> rivers;
+    double scale = 0;  // pixels per metre
+    QSize size;        // of the widget
+    QPointF corner;    // the map's, in pixels from the camera
+    QPixmap pixels;
+  };
+  RiverPicture picture_;
   double radius_m_ = 1500, yaw_ = 0, fov_ = 0.9;
   MapColour colour_ = MapColour::kState;
 };
