@@ -22,10 +22,13 @@ class Falls : public ::testing::TestWithParam<const char*> {
     const std::string name = GetParam();
     return name == "bounded" ? Loaded::parsed(kBounded) : Loaded::shipped(name);
   }
-  // A position in the world; every other one on a border of blocks or at the world's edge.
+  // A position in the world; every other one on a border of blocks or at the world's edge. Land of
+  // a river network takes 30 ms where none is near, so most positions there are in one place.
   static core::WorldPosition random_place(Scene& scene, core::RandomStream& random, int i) {
     const world::World& w = scene.loaded.world;
     const auto index = [&](std::int64_t blocks) {
+      if (blocks == 0 && w.network() != nullptr && i >= 100)
+        return static_cast<std::int32_t>(random.next_integer(-20, 20));
       if (blocks == 0) return static_cast<std::int32_t>(random.next_integer(-(1 << 30), 1 << 30));
       if (i % 8 == 3) return static_cast<std::int32_t>(random.next_unit() < 0.5 ? 0 : blocks - 1);
       return static_cast<std::int32_t>(random.next_integer(0, blocks - 1));
@@ -49,9 +52,7 @@ TEST_P(Falls, CharactersThatAreTeleportedAndDroppedStayAboveTheGround) {
   core::RandomStream random(1, 0, 0, 0, core::Purpose::kPosition);
   const auto id = scene.physics.add(CharacterSettings{.feet = random_place(scene, random, 0)});
   ASSERT_TRUE(id);
-  const bool has_rivers = scene.loaded.world.shaped.network.has_value();
-  const int drops = has_rivers ? 100 : 1000;  // each river land takes 30 ms at first
-  for (int i = 0; i < drops; ++i) {
+  for (int i = 0; i < 1000; ++i) {
     core::WorldPosition at = random_place(scene, random, i);
     at.local.y += random.next_real(-100, 60);
     ASSERT_TRUE(scene.physics.set_feet(*id, at));
