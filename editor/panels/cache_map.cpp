@@ -163,9 +163,10 @@ void CacheMap::show_cells(std::vector<Cell> cells, double yaw, double horizontal
   update();
 }
 
-void CacheMap::show_rivers(std::shared_ptr<const RiverMap> rivers, glm::dvec2 from_camera_m) {
+void CacheMap::show_rivers(std::shared_ptr<const RiverMap> rivers,
+                           const core::WorldPosition& camera, double block_m) {
   rivers_ = std::move(rivers);
-  rivers_from_camera_m_ = from_camera_m;
+  if (rivers_ != nullptr) rivers_from_camera_m_ = core::offset_m(rivers_->corner, camera, block_m);
   update();
 }
 
@@ -230,7 +231,7 @@ void CacheMap::paintEvent(QPaintEvent*) {
 void CacheMap::paint_rivers(QPainter& painter) {
   const QPointF low(-width() / 2.0, -height() / 2.0), margin(kPictureMarginPx, kPictureMarginPx);
   painter.fillRect(QRectF(low, size()), QColor(12, 20, 34, 150));
-  const QPointF corner = QPointF(rivers_from_camera_m_.x, rivers_from_camera_m_.y) * pixels_per_m();
+  const QPointF corner = QPointF(rivers_from_camera_m_.x, rivers_from_camera_m_.z) * pixels_per_m();
   const QPointF moved = corner - picture_.corner;
   if (picture_.rivers != rivers_ || picture_.scale != pixels_per_m() || picture_.size != size() ||
       std::max(std::abs(moved.x()), std::abs(moved.y())) > kPictureMarginPx)
@@ -347,12 +348,8 @@ QWidget* make_cache_map_panel(WorldView& view) {
     map->note(scene);  // also while the map is hidden: it measures ages
     if (!map->isVisible()) return;
     map->show(scene);
-    const auto rivers = view.rivers().map();
-    const glm::dvec3 away = rivers == nullptr
-                                ? glm::dvec3(0.0)
-                                : core::offset_m(rivers->corner, scene.camera().pose.position,
-                                                 scene.world().block_size_m());
-    map->show_rivers(rivers, {away.x, away.z});
+    map->show_rivers(view.rivers().map(), scene.camera().pose.position,
+                     scene.world().block_size_m());
     update_legend();
   });
   timer->start(kMapUpdateMs);

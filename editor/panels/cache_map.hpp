@@ -50,9 +50,9 @@ class CacheMap final : public QWidget {
   void show(const scene::Scene& scene);
   // Shows given nodes, coarse ones first; yaw and field of view in radians.
   void show_cells(std::vector<Cell> cells, double yaw, double horizontal_fov);
-  // Draws channels, shores and divides over the nodes; null: none. `from_camera_m`: x and z of the
-  // map's corner from the camera.
-  void show_rivers(std::shared_ptr<const RiverMap> rivers, glm::dvec2 from_camera_m);
+  // Draws channels, shores and divides over the nodes; null: none. `block_m`: side of a block.
+  void show_rivers(std::shared_ptr<const RiverMap> rivers, const core::WorldPosition& camera,
+                   double block_m);
   void set_colour(MapColour colour);
   // Half the smaller side of the map.
   void set_radius_m(double radius_m);
@@ -78,7 +78,7 @@ class CacheMap final : public QWidget {
   std::vector<Cell> cells_;                             // coarse ones first
   std::unordered_map<std::uint64_t, KnownMesh> known_;  // by entity of a node
   std::shared_ptr<const RiverMap> rivers_;
-  glm::dvec2 rivers_from_camera_m_{0.0};
+  glm::dvec3 rivers_from_camera_m_{0.0};
   // The rivers as they were drawn last, with a margin for a camera that moves.
   struct RiverPicture {
     std::shared_ptr<const RiverMap> rivers;

@@ -97,16 +97,24 @@ TEST_F(RiversInView, TheMapDrawsChannelsInTheColoursOfItsLegend) {
   map.resize(400, 400);
   map.set_radius_m(100);  // 2 pixels a metre
   map.show_cells({CacheMap::Cell()}, 1.5, 0.1);
-  map.show_rivers(rivers, {0, 0});
-  const QImage image = map.grab().toImage();
-  for (std::size_t i = 2; i < rivers->channels.size(); ++i) {  // those of 1 pixel are translucent
-    const QColor expected = shown_colour(rivers->channels[i].width_px);
-    const QColor found = image.pixelColor(120, 200 + 2 * (10 * static_cast<int>(i) - 55));
-    EXPECT_LT(std::max({std::abs(found.red() - expected.red()),
-                        std::abs(found.green() - expected.green()),
-                        std::abs(found.blue() - expected.blue())}),
-              30)
-        << i;
+  // Also where the map moves its last picture with the camera, and where that is no longer enough.
+  for (const double east_m : {0.0, 30.0, -30.0, -75.0}) {
+    map.show_rivers(rivers, {rivers->corner, {east_m, 0, 0}}, 64);
+    const QImage image = map.grab().toImage();
+    for (std::size_t i = 2; i < rivers->channels.size(); ++i) {  // 1 pixel is translucent
+      const QColor expected = shown_colour(rivers->channels[i].width_px);
+      const auto differs = [&](int x_px) {
+        const QColor found = image.pixelColor(x_px, 200 + 2 * (10 * static_cast<int>(i) - 55));
+        return std::max({std::abs(found.red() - expected.red()),
+                         std::abs(found.green() - expected.green()),
+                         std::abs(found.blue() - expected.blue())});
+      };
+      const int left_px = 20 - static_cast<int>(2 * east_m), right_px = left_px + 360;
+      EXPECT_LT(differs(std::max(left_px, 0) + 6), 30) << i << " from " << east_m;
+      EXPECT_LT(differs(std::min(right_px, 400) - 6), 30) << i << " from " << east_m;
+      EXPECT_TRUE(left_px < 12 || differs(left_px - 10) > 60) << i << " from " << east_m;
+      EXPECT_TRUE(right_px > 388 || differs(right_px + 10) > 60) << i << " from " << east_m;
+    }
   }
   command("River network");
   const auto* dock = window_->findChild<QDockWidget*>("map");
