@@ -14,7 +14,6 @@
 #include "engine/core/replace_file.hpp"
 #include "engine/telemetry/output_file.hpp"
 #include "engine/telemetry/progress_bar.hpp"
-#include "engine/world/files/world_file.hpp"
 
 namespace psygen::cli {
 namespace {

@@ -30,7 +30,6 @@
 #include "engine/tiles/heightmap.hpp"
 #include "engine/tiles/tile_tree.hpp"
 #include "engine/tiles/tileset.hpp"
-#include "engine/world/files/world_file.hpp"
 
 namespace psygen::cli {
 namespace {
@@ -251,7 +250,6 @@ int ExportCommand::run() {
   if (block_ || region_ || command_->count("--world") > 0) {
     auto loaded = load_world(world_, registry);
     if (!loaded) return fail_with(loaded.error());
-    world::log_warnings(*loaded, world_);
     world = std::move(*loaded);
   }
   if (region_) return export_region(*world, registry);

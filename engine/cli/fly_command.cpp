@@ -22,6 +22,7 @@
 #include "engine/core/data_file.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/replace_file.hpp"
+#include "engine/handmade/files.hpp"
 #include "engine/image/image_io.hpp"
 #include "engine/inspect/inspect.hpp"
 #include "engine/scene/frame/clock.hpp"
@@ -29,6 +30,7 @@
 #include "engine/synthesis/mesh_supply.hpp"
 #include "engine/synthesis/request_stream.hpp"
 #include "engine/telemetry/output_file.hpp"
+#include "engine/world/files/world_file.hpp"
 
 namespace psygen::cli {
 namespace {
@@ -336,7 +338,9 @@ int FlyCommand::run_rank() {
   models::Registry registry = models::make_standard_registry();
   const auto key =
       (peers.rank() == 0 ? find_files() : find_world(options_.session))
-          .and_then([&] { return load_world(options_.session.world_file.string(), registry); })
+          .and_then([&] {  // the session logs its warnings
+            return world::load_world(options_.session.world_file, registry, &handmade::files());
+          })
           .map([&](const world::World& world) {
             return cluster::compatibility_key(world, registry, core::version());
           });

@@ -7,7 +7,6 @@
 #include "engine/cli/commands.hpp"
 #include "engine/cli/shipped_files.hpp"
 #include "engine/models/registry.hpp"
-#include "engine/world/files/world_file.hpp"
 
 namespace psygen::cli {
 namespace {
@@ -79,7 +78,6 @@ class ModelsCommand final : public Command {
     if (!world_.empty()) {
       const auto world = load_world(world_, registry);
       if (!world) return fail_with(world.error());
-      world::log_warnings(*world, world_);
     }
     return print(json_ ? json_of(registry) : table_of(registry));
   }

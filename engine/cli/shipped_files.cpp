@@ -88,7 +88,9 @@ core::Result<fs::path> find_file(Shipped kind, const std::string& name) {
 core::Result<world::World> load_world(const std::string& name, models::Registry& registry) {
   const auto file = find_file(Shipped::kWorld, name);
   if (!file) return tl::unexpected(file.error());
-  return world::load_world(*file, registry, &handmade::files());
+  auto world = world::load_world(*file, registry, &handmade::files());
+  if (world) world::log_warnings(*world, name);
+  return world;
 }
 
 core::Result<world::World> load_world_and_files(const std::string& name,

@@ -19,7 +19,8 @@ enum class Shipped : std::uint8_t { kWorld, kPath };
 // neither exists; the message lists the searched folders and the shipped files.
 core::Result<std::filesystem::path> find_file(Shipped kind, const std::string& name);
 
-// Reads the world that an option names. Fails as find_file() and world::load_world().
+// Reads the world that an option names, and logs its warnings. Fails as find_file() and
+// world::load_world().
 core::Result<world::World> load_world(const std::string& name, models::Registry& registry);
 
 // Reads a world whose output goes to files: also hashes the contents of the files that it names

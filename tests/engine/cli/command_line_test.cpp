@@ -288,6 +288,24 @@ TEST(CommandLine, AmplifyOfAWorldWithSpeciesHasTheSameHashForAnyNumberOfThreads)
   EXPECT_EQ(hash_in(one.out), hash_in(two.out));
 }
 
+TEST(CommandLine, EachCommandThatReadsAWorldPrintsItsWarningsOnce) {
+  const TemporaryFolder folder;
+  const std::string world = (folder / "flooded.toml").string(), file = (folder / "b.glb").string();
+  std::ofstream(world) << read(source_file("game/worlds/paper.toml"))
+                       << "\n[water]\nlevel_m = 5000\n"
+                          "[[road]]\npoints_m = [[100, 100], [300, 120]]\n";
+  for (const std::string& command : std::vector<std::string>{
+           "amplify --region 0,0,1,1", "amplify --sample 1,1", "models",
+           "export --block 0,0 --out " + file, "fly --headless --frames 2 --size 64x36"}) {
+    const Outcome outcome = run_psygen(command + " --world " + world);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    const std::string warning = "road 1: it leads into the sea";
+    const auto at = outcome.err.find(warning);
+    ASSERT_NE(at, std::string::npos) << command << "\n" << outcome.err;
+    EXPECT_EQ(outcome.err.find(warning, at + 1), std::string::npos) << command;
+  }
+}
+
 TEST(CommandLine, AmplifyRejectsRegionsOutsideTheWorld) {
   const Outcome region = run_psygen("amplify --region 511,0,513,1");
   EXPECT_EQ(region.code, 1);
