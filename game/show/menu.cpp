@@ -1,6 +1,7 @@
 #include "game/show/menu.hpp"
 
 #include <imgui/imgui.h>
+#include <imgui/imgui_internal.h>
 
 #include <cmath>
 #include <utility>
@@ -12,6 +13,17 @@ constexpr float kWidth = 340;
 constexpr std::array<const char*, 4> kQualities{"low", "medium", "high", "ultra"};
 constexpr int kMapCells = 25;  // on each side of the player
 
+// Focuses the next control, and shows that to keys and pads, which act on nothing else. ImGui hides
+// a focus that a program sets since 1.90, and has a function that shows it since 1.91.4.
+void focus_next() {
+  ImGui::SetKeyboardFocusHere();
+#if IMGUI_VERSION_NUM >= 19140
+  ImGui::SetNavCursorVisible(true);
+#else
+  ImGui::GetCurrentContext()->NavDisableHighlight = false;
+#endif
+}
+
 // Begins a window without a frame at the left. `opened`: its first control takes the focus.
 void begin(const char* title, float scale, float width, float text, bool opened) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
@@ -22,7 +34,7 @@ void begin(const char* title, float scale, float width, float text, bool opened)
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoCollapse);
   ImGui::SetWindowFontScale(text);
-  if (opened) ImGui::SetKeyboardFocusHere();
+  if (opened) focus_next();
 }
 
 // Map colours, in the order of world::GroundKind; the last one is water.
