@@ -30,28 +30,35 @@ vec4 mirrored_land(vec3 p, vec3 r) {
                  mix(line, vec2(1e-4), lessThan(abs(line), vec2(1e-4)));
   float last = min(min(abs(to_edge.x), abs(to_edge.y)), 1.0);
   float depth = from.z / from.w;
-  float before = 0.0;
+  float before = 0.0, hit = -1.0;  // hit: where the ray passes behind the surface that hides it
   for (int i = 0; i < kMirrorSteps; ++i) {
     float s = last * (float(i) + 0.5 + ordered_noise() * 0.5) * (1.0 / float(kMirrorSteps));
     float ray = depth * (1.0 - s);
     float scene = mirror_depth_at(start + s * line);
-    // A surface in front of the ray hides it, unless the ray passes far behind that surface.
-    float away = 1.0 / ray;
-    float behind_by = away - 1.0 / (depth * (1.0 - before)) + 0.1 * away;
-    if (scene > ray && away - 1.0 / scene < behind_by) {
-      float hit = s;
-      for (int half_ = 0; half_ < kMirrorHalvings; ++half_) {
-        float middle = 0.5 * (before + hit);
-        bool behind = mirror_depth_at(start + middle * line) > depth * (1.0 - middle);
-        if (behind) hit = middle;
-        else before = middle;
+    if (scene <= ray) {
+      hit = -1.0;
+    } else {
+      if (hit < 0.0) hit = s;
+      // The ray meets the surface, unless it passes far behind that.
+      float away = 1.0 / ray;
+      float behind_by = away - 1.0 / (depth * (1.0 - before)) + 0.1 * away;
+      if (away - 1.0 / scene < behind_by) {
+        hit = s;
+        for (int half_ = 0; half_ < kMirrorHalvings; ++half_) {
+          float middle = 0.5 * (before + hit);
+          bool behind = mirror_depth_at(start + middle * line) > depth * (1.0 - middle);
+          if (behind) hit = middle;
+          else before = middle;
+        }
+        break;
       }
-      vec2 at = (start + hit * line) / size;
-      float share = smoothstep(0.0, 0.1, min(min(at.x, 1.0 - at.x), at.y));
-      vec2 texel = at * size / vec2(textureSize(mirror, 0));
-      return vec4(light_of(textureLod(mirror, texel, 0.0).rgb), share);
     }
     before = s;
   }
-  return vec4(0.0);
+  // A ray that ends hidden mirrors the surface that hides it rather than the sky.
+  if (hit < 0.0) return vec4(0.0);
+  vec2 at = (start + hit * line) / size;
+  float share = smoothstep(0.0, 0.1, min(min(at.x, 1.0 - at.x), at.y));
+  vec2 texel = at * size / vec2(textureSize(mirror, 0));
+  return vec4(light_of(textureLod(mirror, texel, 0.0).rgb), share);
 }

@@ -239,6 +239,33 @@ TEST_P(WaterOfPresets, MirrorsACliffWhereItHasWaves) {
   }
 }
 
+// A slab 4 m ahead, above the horizon, hides the place that mirrored rays lead to. They mirror the
+// slab, because nothing is known behind it: single ones that mirrored the sky would be bright dots.
+TEST_P(WaterOfPresets, MirrorsWhatHidesTheEndOfARay) {
+  const auto renderer = open(GetParam());
+  ASSERT_TRUE(renderer);
+  const auto box = synthetic::make_box(renderer->geometry(), glm::vec3(0.02F));
+  ASSERT_TRUE(box);
+  MeshDraw slab;
+  slab.range = *box;
+  slab.origin = {0, 0, -4};
+  slab.box_centre = {0, 2.0F, 0};
+  slab.box_half_extent = {8, 1.7F, 0.3F};
+  input_ = synthetic::look(6.0, -0.15, kPictureSize);
+  input_.light.haze_density = 0.0F;
+  input_.water = WaterPlane{0.0F, {0.012F, 0.040F, 0.052F}};
+  const auto y = (std::atan2(6.0, 45.0) - 0.15) / std::tan(input_.projection.vertical_fov * 0.5);
+  const auto at = static_cast<std::uint32_t>((0.5 + 0.5 * y) * kPictureSize.height);
+  const image::Image open_water = draw(*renderer);
+  input_.models = {&slab, 1};
+  const image::Image below_slab = draw(*renderer);
+  if (traits_of(GetParam()).waves) {
+    EXPECT_LT(row(below_slab, at), 0.8 * row(open_water, at));
+  } else {
+    EXPECT_NEAR(row(below_slab, at), row(open_water, at), 6);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, WaterOfPresets,
                          testing::Values(Preset::kLow, Preset::kMedium, Preset::kHigh,
                                          Preset::kUltra),
