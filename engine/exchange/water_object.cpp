@@ -57,7 +57,7 @@ std::optional<Object> water_object(const world::World& world, core::BlockCoord n
     const glm::dvec2 at_m =
         glm::dvec2(static_cast<double>(i % side), static_cast<double>(i / side)) * cell_m;
     Corner corner{world::water_surface(world, {block, {at_m.x, 0, at_m.y}})};
-    corner.wet = corner.water && corner.water->depth_m(ground.at(at_m).height_m) > 0;
+    corner.wet = corner.water && corner.water->depth_over(ground.at(at_m).height_m) > 0;
     wet += corner.wet ? 1 : 0;
     sea += corner.wet && corner.water->body == world::kSea ? 1 : 0;
     corners.push_back(corner);

@@ -70,7 +70,7 @@ Displacement displacement_of(const Collider& shape) {
 
 WaterHere water_at(Terrain& terrain, const world::World& world, const btVector3& at) {
   const auto water = world::water_surface(world, terrain.position(at));
-  if (!water || water->depth_m(terrain.ground(at).height_m) <= 0) return {};
+  if (!water || water->depth_over(terrain.ground(at).height_m) <= 0) return {};
   return {water->surface_m, to_bt(water->normal),
           to_bt(glm::dvec3(water->flow_m_s.x, 0, water->flow_m_s.y))};
 }

@@ -291,7 +291,7 @@ bool World::meet_water(const Course& course, double t, Hit& hit) {
   const auto water = water_under(course, t);
   if (!at || !water) return false;
   const glm::dvec2 local(at->local.x, at->local.z);
-  if (water->depth_m(cache_.ground(at->block).at(local).height_m) <= 0) return false;
+  if (water->depth_over(cache_.ground(at->block).at(local).height_m) <= 0) return false;
   hit = Hit();
   hit.kind = HitKind::kWater;
   hit.distance_m = t;

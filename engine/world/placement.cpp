@@ -158,7 +158,7 @@ bool Scattering::may_stand(const models::GroundPoint& ground, glm::dvec2 local_m
     return false;
   if (scatter_.limits_depth()) {
     const auto water = water_over(local_m);
-    if (water && water->depth_m(ground.height_m) > scatter_.max_depth_m) return false;
+    if (water && water->depth_over(ground.height_m) > scatter_.max_depth_m) return false;
   }
   if (!palette_) return true;
   const GroundKind kind = main_kind(
@@ -178,7 +178,7 @@ bool Scattering::is_near_water(const models::BlockGround& ground, glm::dvec2 cor
                                glm::dvec2 local_m) const {
   const auto is_wet = [&](glm::dvec2 at_m) {
     const auto water = water_over(at_m);
-    return water && water->depth_m(ground.at(corner_m + at_m).height_m) > 0;
+    return water && water->depth_over(ground.at(corner_m + at_m).height_m) > 0;
   };
   if (is_wet(local_m)) return true;
   for (const double share : {1.0, 0.5}) {

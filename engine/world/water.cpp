@@ -109,15 +109,8 @@ std::uint64_t bodies_hash(const std::vector<River>& rivers) {
 
 WaterPoint water_at(const World& world, const core::WorldPosition& at, double ground_m) {
   const auto water = water_surface(world, at);
-  const double depth_m = water ? water->depth_m(ground_m) : 0;
-  if (depth_m <= 0) return {};
-  return {.surface_m = water->surface_m,
-          .depth_m = depth_m,
-          .normal = water->normal,
-          .flow_m_s = water->flow_m_s,
-          .foam = water->foam,
-          .discharge_m3_s = water->discharge_m3_s,
-          .body = water->body};
+  const double depth_m = water ? water->depth_over(ground_m) : 0;
+  return depth_m > 0 ? WaterPoint{*water, depth_m} : WaterPoint();
 }
 
 WaterPoint water_at(const World& world, const core::WorldPosition& at) {

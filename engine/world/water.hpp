@@ -7,6 +7,7 @@
 // Drawing is left to the renderer. docs/queries.md.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -23,33 +24,27 @@ namespace psygen::world {
 using WaterBody = std::uint32_t;
 inline constexpr WaterBody kNoWater = 0, kSea = 1, kFirstAdded = 1U << 31;
 
+// A height below all ground, also as a float: the surface of water in a dry place.
+inline constexpr double kDrySurfaceM = -1e30;
+
 // The surface of a body of water over a place, whether the ground there is lower or higher.
 struct WaterSurface {
-  double surface_m = 0;       // height in metres of the world
-  glm::vec3 normal{0, 1, 0};  // unit length, upwards
-  glm::vec2 flow_m_s{0.0F};   // velocity along x and z in metres a second; 0: still
-  float foam = 0;             // fraction of the surface that foams, 0 … 1
+  double surface_m = kDrySurfaceM;  // height in metres of the world
+  glm::vec3 normal{0, 1, 0};        // unit length, upwards
+  glm::vec2 flow_m_s{0.0F};         // velocity along x and z in metres a second; 0: still
+  float foam = 0;                   // fraction of the surface that foams, 0 … 1
   // Of a river: in the file, by its width and depth, or by the drainage area of a river network
   // (models::network::discharge_m3_s()). Nothing: a lake, or the sea.
   std::optional<double> discharge_m3_s = std::nullopt;
   WaterBody body = kNoWater;  // never kNoWater where a function returns a surface
   // Depth above ground of this height, in metres; 0: the ground is dry.
-  double depth_m(double ground_m) const { return surface_m > ground_m ? surface_m - ground_m : 0; }
+  double depth_over(double ground_m) const { return std::max(surface_m - ground_m, 0.0); }
 };
-
-// A height below all ground, also as a float: the surface of water in a dry place.
-inline constexpr double kDrySurfaceM = -1e30;
 
 // The water at a place. If the place is dry, depth and flow are 0, the body is kNoWater and
 // surface_m is kDrySurfaceM, so max(ground, surface_m) is the surface of the world anywhere.
-struct WaterPoint {
-  double surface_m = kDrySurfaceM;  // height in metres of the world
-  double depth_m = 0;               // from the surface down to the ground; 0: dry
-  glm::vec3 normal{0, 1, 0};
-  glm::vec2 flow_m_s{0.0F};  // velocity along x and z in metres a second
-  float foam = 0;            // fraction of the surface that foams, 0 … 1
-  std::optional<double> discharge_m3_s = std::nullopt;  // of a river
-  WaterBody body = kNoWater;
+struct WaterPoint : WaterSurface {
+  double depth_m = 0;  // from the surface down to the ground; 0: dry
   bool is_dry() const { return body == kNoWater; }
 };
 

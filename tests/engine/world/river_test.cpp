@@ -264,7 +264,7 @@ TEST(River, HoldsItsWater) {
   for (int i = kSide; i < kSide * (kSide - 1); ++i) {
     const auto at = static_cast<std::size_t>(i);
     if (i % kSide == 0 || i % kSide == kSide - 1) continue;
-    if (!water[at] || water[at]->body == kSea || water[at]->depth_m(ground_m[at]) <= 0) continue;
+    if (!water[at] || water[at]->body == kSea || water[at]->depth_over(ground_m[at]) <= 0) continue;
     ++wet;
     for (const int way : {-kSide, -1, 1, kSide}) {
       const auto beside = static_cast<std::size_t>(i + way);
