@@ -13,8 +13,9 @@ namespace {
 
 constexpr double kGroundAcceleration = 40, kAirAcceleration = 6;  // m/s²
 constexpr double kRiseAcceleration = 20;                          // m/s², of CharacterInput::rise
-constexpr double kMaxSlide = 12;  // m/s down ground that is too steep
-constexpr double kPieceM = 0.2;   // longer distances are split into pieces
+constexpr double kMaxSlide = 12;                // m/s down ground that is too steep
+constexpr double kHeldS = 0.25, kHeldM = 0.05;  // a slide ends that sinks no farther in this time
+constexpr double kPieceM = 0.2;                 // longer distances are split into pieces
 constexpr int kSlides = 4;
 constexpr double kFloats = 0.9;   // fraction of the height under water at which it floats
 constexpr double kWaterDrag = 3;  // 1/s, of vertical speed under water
@@ -188,6 +189,7 @@ void Character::move_down(double drop) {
   velocity.setY(0);
   if (on_ground) return;
   // Too steep: the character slides down.
+  slides_ = true;
   const btVector3 downhill = wall(support.normal);
   const double faster = kMaxSlide - velocity.dot(downhill);
   velocity += downhill * std::clamp(fall_speed * support.normal.y(), 0.0, std::max(faster, 0.0));
@@ -271,6 +273,7 @@ void Character::step(double dt, double gravity, const btVector3& carried, const 
 
   const double way_m = btVector3(velocity.x(), 0, velocity.z()).length() * dt;
   const int pieces = std::max(static_cast<int>(std::ceil(way_m / kPieceM)), 1);
+  slides_ = false;
   const double part = dt / pieces;
   for (int i = 0; i < pieces; ++i) {
     move_aside(btVector3(velocity.x(), 0, velocity.z()) * part);
@@ -282,6 +285,11 @@ void Character::step(double dt, double gravity, const btVector3& carried, const 
     }
     follow_ground();
   }
+  // Between steep sides a slide ends; the character can jump and walk as from level ground.
+  const bool sinks = !slides_ || feet_.y() < held_at_m_ - kHeldM;
+  if (sinks) held_at_m_ = feet_.y();
+  held_s_ = sinks ? 0 : held_s_ + dt;
+  if (held_s_ > kHeldS) on_ground = true;
   publish(false);
 }
 

@@ -71,7 +71,9 @@ class Character {
   bool rising_ = false;  // has jumped in this step
   query::ObjectId floor_;
   btVector3 floor_velocity_{0, 0, 0};
-  bool on_edge_ = false;  // on the edge of a step that it climbs
+  bool on_edge_ = false;               // on the edge of a step that it climbs
+  bool slides_ = false;                // down ground that is too steep, in this step
+  double held_s_ = 0, held_at_m_ = 0;  // time since a slide has sunk, and the height then
   btCapsuleShape capsule_;
   btDefaultMotionState motion_;
   std::unique_ptr<btRigidBody> body_;

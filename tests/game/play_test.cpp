@@ -49,7 +49,7 @@ struct Begun {
           play->block_m());
       const auto ground = play->query().ground(at);
       if (!ground || ground->water_depth_m < depth_m) continue;
-      at.local.y = land->world.water.level_m;
+      at.local.y = ground->surface_m;
       return at;
     }
     ADD_FAILURE() << "no water";
@@ -146,7 +146,7 @@ TEST(Walker, FloatsInDeepWaterAndSinksNoDeeperThanTheChest) {
   game.put(at);
   game.steps(600);
   EXPECT_EQ(game.play->walker().gait(), Gait::kSwim);
-  const double level_m = game.land->world.water.level_m;
+  const double level_m = game.play->query().water(game.play->walker().feet())->surface_m;
   EXPECT_NEAR(game.play->walker().feet().local.y, level_m - 1.15, 0.25);
   EXPECT_GT(game.play->walker().eyes(1).position.local.y, level_m);
 }
@@ -220,7 +220,7 @@ TEST(Creatures, LiveInTheirHabitatAndFlee) {
       const auto ground = game.play->query().ground(c.at);
       ASSERT_TRUE(ground);
       if (c.kind == Kind::kFish) {
-        EXPECT_LE(c.at.local.y, game.land->world.water.level_m);
+        EXPECT_LE(c.at.local.y, ground->surface_m);
       } else {
         EXPECT_GE(c.at.local.y, ground->height_m - 1e-6);
       }
@@ -234,7 +234,6 @@ TEST(Creatures, LiveInTheirHabitatAndFlee) {
 
 TEST(Creatures, FishStayBelowTheSurfaceAndBirdsAboveIt) {
   Begun game(6);
-  const double level_m = game.land->world.water.level_m;
   game.put(game.water(2));
   game.steps(120);
   int fish = 0;
@@ -243,10 +242,10 @@ TEST(Creatures, FishStayBelowTheSurfaceAndBirdsAboveIt) {
     ASSERT_TRUE(ground);
     if (c.kind == Kind::kFish) {
       ++fish;
-      EXPECT_GE(c.at.local.y, level_m - 0.95);
-      EXPECT_LE(c.at.local.y, level_m - 0.15);
+      EXPECT_GE(c.at.local.y, ground->surface_m - 0.95);
+      EXPECT_LE(c.at.local.y, ground->surface_m - 0.15);
     } else if (c.kind == Kind::kBird) {
-      EXPECT_GE(c.at.local.y, std::max(level_m, ground->height_m) + 1.5 - 1e-9);
+      EXPECT_GE(c.at.local.y, ground->surface_m + 1.5 - 1e-9);
     }
   }
   EXPECT_GT(fish, 0);

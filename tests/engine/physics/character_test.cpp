@@ -161,6 +161,36 @@ TEST(Character, ClimbsStepsNoFasterThanItWalks) {
   }
 }
 
+// The sides of a notch are too steep to stand on, but together they hold a character.
+TEST(Character, JumpsFromTheBottomOfANotch) {
+  for (const double depth_m : {2.5, 4.0}) {
+    Scene scene = Scene::shipped("paper");
+    const core::WorldPosition bottom = scene.above({256, 256}, 30, 30, 0);
+    world::Edits edits;
+    ASSERT_TRUE(edits.raise(scene.loaded.world, bottom, 1.01, -depth_m));  // one vertex
+    world::set_edits(scene.loaded.world, edits.layer());
+    const auto id =
+        scene.physics.add(CharacterSettings{.feet = scene.above(bottom.block, 30.3, 30.1, 0.2)});
+    ASSERT_TRUE(id);
+    const auto state = [&] { return *scene.physics.state(*id); };
+    scene.steps(120);
+    const auto ground = scene.query.ground(state().feet);
+    ASSERT_TRUE(ground);
+    ASSERT_LT(ground->normal.y, 0.6F) << "too steep to stand on";
+    EXPECT_TRUE(state().on_ground);
+    const double rest_m = state().feet.local.y;
+    ASSERT_TRUE(scene.physics.tell(*id, {.jump = true}));
+    double highest_m = rest_m;
+    for (int i = 0; i < 40; ++i) {
+      scene.steps(1);
+      highest_m = std::max(highest_m, state().feet.local.y);
+    }
+    EXPECT_GT(highest_m, rest_m + 0.5);
+    scene.steps(180);
+    EXPECT_TRUE(state().on_ground) << "it has slid back, and stands again";
+  }
+}
+
 TEST(Character, IsNeverBelowGroundThatWasJustRaised) {
   Scene scene(Loaded::shipped("five_species"));
   const core::WorldPosition place = scene.above({3, 4}, 20, 20, 0);
