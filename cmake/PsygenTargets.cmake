@@ -151,6 +151,18 @@ function(psygen_note_component name libraries public_packages packages)
   set_property(TARGET psygen_settings APPEND PROPERTY PSYGEN_COMPONENTS ${name})
 endfunction()
 
+# Links folders of data beside the programs, which look for them there: in the folder of each configuration if a
+# build has several.
+function(psygen_link_data)
+  foreach(configuration "" ${CMAKE_CONFIGURATION_TYPES})
+    file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/bin/${configuration})
+    foreach(folder IN LISTS ARGN)
+      file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR}/${folder} ${PROJECT_BINARY_DIR}/bin/${configuration}/${folder}
+           SYMBOLIC)
+    endforeach()
+  endforeach()
+endfunction()
+
 # Program NAME. PRIVATE lists the libraries that it uses.
 function(psygen_executable name)
   cmake_parse_arguments(ARG "" "" "SOURCES;PRIVATE" ${ARGN})
@@ -161,7 +173,7 @@ function(psygen_executable name)
   set_target_properties(${name} PROPERTIES
     RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin
     PSYGEN_OWN ON
-    BUILD_RPATH ${PROJECT_BINARY_DIR}/engine/image
+    BUILD_RPATH $<TARGET_FILE_DIR:psygen_openimageio>
     INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR};$ORIGIN/../${CMAKE_INSTALL_LIBDIR}/psygen")
   target_link_options(${name} PRIVATE LINKER:--disable-new-dtags)
   psygen_separate_repeated_names(${name})
