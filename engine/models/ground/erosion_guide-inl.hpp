@@ -1,6 +1,5 @@
-// The guide of the erosion's kernel: heights and derivatives by cubic splines, and
-// the sediment of hollows. Only the kernel includes it, once per instruction set; hence the unusual
-// include guard.
+// The guide of the erosion's kernel: heights and derivatives by cubic splines, and the sediment of
+// hollows. Only the kernel includes it, once per instruction set; hence the unusual include guard.
 #if defined(PSYGEN_MODELS_GROUND_EROSION_GUIDE_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef PSYGEN_MODELS_GROUND_EROSION_GUIDE_INL
 #undef PSYGEN_MODELS_GROUND_EROSION_GUIDE_INL

@@ -5,19 +5,15 @@
 
 #include "engine/models/network/halving.hpp"
 #include "tests/engine/models/network/drainage.hpp"
+#include "tests/engine/models/network/networks.hpp"
 
 namespace psygen::models {
 namespace {
 
 using network::Kind;
 using network::Node;
-
-const RiverFrame kFrame{.cell_m = 1, .cells_per_block = 63, .relief_m = 2000, .sea_level_m = 200};
-
-std::shared_ptr<const RiverNetwork> network_of(const RiverSettings& settings,
-                                               const RiverFrame& frame = kFrame) {
-  return *RiverNetwork::create(settings, frame, std::make_shared<NetworkStore>());
-}
+using river_tests::kFrame;
+using river_tests::network_of;
 
 // Land of a seed: squares of 8 km whose middle is no sea.
 std::vector<std::array<std::int64_t, 2>> land_places(const RiverSettings& settings,

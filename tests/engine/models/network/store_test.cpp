@@ -14,7 +14,7 @@ namespace {
 
 using Place = std::array<std::int64_t, 2>;
 
-std::shared_ptr<const RiverNetwork> network_of(std::shared_ptr<NetworkStore> store) {
+std::shared_ptr<const RiverNetwork> network_with(std::shared_ptr<NetworkStore> store) {
   return *RiverNetwork::create({.halvings = 6}, {.relief_m = 2000, .sea_level_m = 200},
                                std::move(store));
 }
@@ -41,13 +41,13 @@ TEST(NetworkStore, ChangesNoBitWithAnySizeAndThreadCount) {
     places.push_back(
         {random.next_integer(-300'000, 300'000), random.next_integer(-300'000, 300'000)});
   std::vector<std::uint64_t> expected;
-  const auto bare = network_of(nullptr);
+  const auto bare = network_with(nullptr);
   for (const Place& place : places)
     expected.push_back(hash_of(*bare, place));
   for (const std::size_t bytes : {std::size_t{0}, std::size_t{1} << 20, std::size_t{64} << 20}) {
     for (const std::size_t threads : {1U, 2U, 4U}) {
       const auto store = std::make_shared<NetworkStore>(bytes);
-      const auto network = network_of(store);
+      const auto network = network_with(store);
       std::vector<std::thread> running;
       std::vector<int> wrong(threads, 0);
       for (std::size_t t = 0; t < threads; ++t)
