@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
+#include <numbers>
 #include <utility>
 
 #include "engine/physics/shapes.hpp"
@@ -13,9 +14,9 @@ namespace {
 
 constexpr double kGroundAcceleration = 40, kAirAcceleration = 6;  // m/s²
 constexpr double kRiseAcceleration = 20;                          // m/s², of CharacterInput::rise
-constexpr double kMaxSlide = 12;                // m/s down ground that is too steep
-constexpr double kHeldS = 0.25, kHeldM = 0.05;  // a slide ends that sinks no farther in this time
-constexpr double kPieceM = 0.2;                 // longer distances are split into pieces
+constexpr double kMaxSlide = 12;                        // m/s down ground that is too steep
+constexpr double kHollowM = 0.3, kHollowDepthM = 0.15;  // no ground so near lies so much lower
+constexpr double kPieceM = 0.2;                         // longer distances are split into pieces
 constexpr int kSlides = 4;
 constexpr double kFloats = 0.9;   // fraction of the height under water at which it floats
 constexpr double kWaterDrag = 3;  // 1/s, of vertical speed under water
@@ -154,6 +155,16 @@ void Character::move_up(double rise) {
   if (sweep.hit) velocity.setY(0);
 }
 
+// True if no ground beside it lies much lower: it cannot slide away, however steep the sides are.
+bool Character::is_in_hollow() {
+  for (int i = 0; i < 8; ++i) {
+    const double angle = i * std::numbers::pi / 4;
+    const btVector3 beside(kHollowM * std::cos(angle), 0, kHollowM * std::sin(angle));
+    if (terrain_.ground(feet_ + beside).height_m < feet_.y() - kHollowDepthM) return false;
+  }
+  return true;
+}
+
 // Falls by `drop`, or follows the ground or object that it stands on.
 void Character::move_down(double drop) {
   if (std::exchange(on_edge_, false)) {
@@ -185,11 +196,10 @@ void Character::move_down(double drop) {
   const double fall_speed = -velocity.y();
   feet_.setY(support.height);
   floor_ = floor;
-  on_ground = is_walkable(support.normal);
+  on_ground = is_walkable(support.normal) || (support.height <= ground.height_m && is_in_hollow());
   velocity.setY(0);
   if (on_ground) return;
   // Too steep: the character slides down.
-  slides_ = true;
   const btVector3 downhill = wall(support.normal);
   const double faster = kMaxSlide - velocity.dot(downhill);
   velocity += downhill * std::clamp(fall_speed * support.normal.y(), 0.0, std::max(faster, 0.0));
@@ -273,7 +283,6 @@ void Character::step(double dt, double gravity, const btVector3& carried, const 
 
   const double way_m = btVector3(velocity.x(), 0, velocity.z()).length() * dt;
   const int pieces = std::max(static_cast<int>(std::ceil(way_m / kPieceM)), 1);
-  slides_ = false;
   const double part = dt / pieces;
   for (int i = 0; i < pieces; ++i) {
     move_aside(btVector3(velocity.x(), 0, velocity.z()) * part);
@@ -285,11 +294,6 @@ void Character::step(double dt, double gravity, const btVector3& carried, const 
     }
     follow_ground();
   }
-  // Between steep sides a slide ends; the character can jump and walk as from level ground.
-  const bool sinks = !slides_ || feet_.y() < held_at_m_ - kHeldM;
-  if (sinks) held_at_m_ = feet_.y();
-  held_s_ = sinks ? 0 : held_s_ + dt;
-  if (held_s_ > kHeldS) on_ground = true;
   publish(false);
 }
 

@@ -54,6 +54,7 @@ class Character {
   void stop_at(const btVector3& normal);
   void move_aside(btVector3 way);
   void move_up(double rise);
+  bool is_in_hollow();
   void move_down(double drop);
   void follow_ground();
   void ride(const btVector3& carried);
@@ -71,9 +72,7 @@ class Character {
   bool rising_ = false;  // has jumped in this step
   query::ObjectId floor_;
   btVector3 floor_velocity_{0, 0, 0};
-  bool on_edge_ = false;               // on the edge of a step that it climbs
-  bool slides_ = false;                // down ground that is too steep, in this step
-  double held_s_ = 0, held_at_m_ = 0;  // time since a slide has sunk, and the height then
+  bool on_edge_ = false;  // on the edge of a step that it climbs
   btCapsuleShape capsule_;
   btDefaultMotionState motion_;
   std::unique_ptr<btRigidBody> body_;
