@@ -157,10 +157,12 @@ void Character::move_up(double rise) {
 
 // True if no ground beside it lies much lower: it cannot slide away, however steep the sides are.
 bool Character::is_in_hollow() {
+  // The gentlest ground that is too steep falls by more.
+  const double depth_m = kHollowDepthM * std::min(std::sqrt(1 / (min_up_ * min_up_) - 1), 1.0);
   for (int i = 0; i < 8; ++i) {
     const double angle = i * std::numbers::pi / 4;
     const btVector3 beside(kHollowM * std::cos(angle), 0, kHollowM * std::sin(angle));
-    if (terrain_.ground(feet_ + beside).height_m < feet_.y() - kHollowDepthM) return false;
+    if (terrain_.ground(feet_ + beside).height_m < feet_.y() - depth_m) return false;
   }
   return true;
 }

@@ -191,6 +191,32 @@ TEST(Character, JumpsFromTheBottomOfANotch) {
   }
 }
 
+TEST(Character, SlidesDownEvenGroundThatIsTooSteepForIt) {
+  Scene scene = Scene::shipped("paper");
+  std::size_t found = 0;
+  for (int i = 0; i < 63 * 63 && found < 20; ++i) {
+    const core::WorldPosition at = scene.above({256, 256}, i % 63 + 0.4, i / 63 + 0.3, 0);
+    const auto up_of = [&](double x, double z) {
+      core::WorldPosition beside = at;
+      beside.local += glm::dvec3(x, 0, z);
+      return double{scene.query.ground(beside)->normal.y};
+    };
+    const double up = up_of(0, 0), slope_deg = std::acos(up) * 180 / 3.14159265;
+    bool even = slope_deg > 15;
+    for (const double m : {-0.35, 0.35})
+      even = even && std::abs(up_of(m, 0) - up) < 0.01 && std::abs(up_of(0, m) - up) < 0.01;
+    if (!even) continue;
+    ++found;
+    const auto id =
+        scene.physics.add(CharacterSettings{.feet = at, .max_slope_deg = slope_deg - 2});
+    ASSERT_TRUE(id);
+    scene.steps(1);
+    EXPECT_FALSE(scene.physics.state(*id)->on_ground) << slope_deg;
+    ASSERT_TRUE(scene.physics.remove(*id));
+  }
+  EXPECT_EQ(found, 20U);
+}
+
 TEST(Character, IsNeverBelowGroundThatWasJustRaised) {
   Scene scene(Loaded::shipped("five_species"));
   const core::WorldPosition place = scene.above({3, 4}, 20, 20, 0);
