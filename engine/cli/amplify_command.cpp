@@ -212,7 +212,7 @@ int AmplifyCommand::run_rank() {
   if (!joined) return fail_with(joined.error());
   cluster::Peers& peers = **joined;
   models::Registry registry = models::make_standard_registry();
-  const auto world = load_world_and_files(world_, registry);
+  const auto world = load_world_and_files(world_, registry, peers.rank() != 0);
   if (auto ok = cluster::agree(world, peers); !ok) return end_with(ok.error(), peers);
   const auto region = region_of(*world);
   if (auto ok = cluster::agree(region, peers); !ok) return end_with(ok.error(), peers);

@@ -22,7 +22,6 @@
 #include "engine/core/data_file.hpp"
 #include "engine/core/log.hpp"
 #include "engine/core/replace_file.hpp"
-#include "engine/handmade/files.hpp"
 #include "engine/image/image_io.hpp"
 #include "engine/inspect/inspect.hpp"
 #include "engine/scene/frame/clock.hpp"
@@ -30,7 +29,6 @@
 #include "engine/synthesis/mesh_supply.hpp"
 #include "engine/synthesis/request_stream.hpp"
 #include "engine/telemetry/output_file.hpp"
-#include "engine/world/files/world_file.hpp"
 
 namespace psygen::cli {
 namespace {
@@ -336,14 +334,12 @@ int FlyCommand::run_rank() {
   if (!joined) return fail_with(joined.error());
   cluster::Peers& peers = **joined;
   models::Registry registry = models::make_standard_registry();
-  const auto key =
-      (peers.rank() == 0 ? find_files() : find_world(options_.session))
-          .and_then([&] {  // the session logs its warnings
-            return world::load_world(options_.session.world_file, registry, &handmade::files());
-          })
-          .map([&](const world::World& world) {
-            return cluster::compatibility_key(world, registry, core::version());
-          });
+  const std::filesystem::path& file = options_.session.world_file;  // the session logs its warnings
+  const auto key = (peers.rank() == 0 ? find_files() : find_world(options_.session))
+                       .and_then([&] { return load_world(file.string(), registry, true); })
+                       .map([&](const world::World& world) {
+                         return cluster::compatibility_key(world, registry, core::version());
+                       });
   const std::uint32_t asked = options_.session.scene.modelers;
   const unsigned threads = asked > 0 ? asked : cluster::threads_for_rank(peers);
   const auto all = cluster::meet(key, threads, peers);

@@ -16,7 +16,6 @@
 #include "engine/synthesis/request_stream.hpp"
 #include "engine/telemetry/units.hpp"
 #include "engine/world/files/text_file.hpp"
-#include "engine/world/files/world_file.hpp"
 
 namespace psygen::cli {
 namespace {

@@ -85,17 +85,18 @@ core::Result<fs::path> find_file(Shipped kind, const std::string& name) {
   return core::fail(core::ErrorCode::kIo, missing(kind, name, folders));
 }
 
-core::Result<world::World> load_world(const std::string& name, models::Registry& registry) {
+core::Result<world::World> load_world(const std::string& name, models::Registry& registry,
+                                      bool quiet) {
   const auto file = find_file(Shipped::kWorld, name);
   if (!file) return tl::unexpected(file.error());
   auto world = world::load_world(*file, registry, &handmade::files());
-  if (world) world::log_warnings(*world, name);
+  if (world && !quiet) world::log_warnings(*world, name);
   return world;
 }
 
-core::Result<world::World> load_world_and_files(const std::string& name,
-                                                models::Registry& registry) {
-  auto world = load_world(name, registry);
+core::Result<world::World> load_world_and_files(const std::string& name, models::Registry& registry,
+                                                bool quiet) {
+  auto world = load_world(name, registry, quiet);
   if (!world) return world;
   const auto hash = handmade::hash_of_files(*world, *find_file(Shipped::kWorld, name));
   if (!hash) return tl::unexpected(hash.error());

@@ -1,5 +1,5 @@
-// Work in another thread, with its result as a future. The caller waits for the future before what
-// the work uses ends.
+// Work in another thread, with its result as a future. The caller keeps all that the work uses
+// alive until the future is ready; the other thread destroys the work itself some time later.
 #pragma once
 
 #include <chrono>
@@ -13,10 +13,10 @@
 
 namespace psygen::core {
 
-// Of a task: as other threads, or only processor time that no other thread needs.
+// Priority of a thread: the usual one, or the lowest, which takes the time that others leave.
 enum class TaskPriority : std::uint8_t { kUsual, kLowest };
 
-// Starts `work` in a new thread; if the system grants none, does it at once in this one.
+// Starts `work` in a new thread. If the system grants none, does it in this one and returns late.
 template <class Work>
 std::future<std::invoke_result_t<Work&>> start_task(Work&& work,
                                                     TaskPriority priority = TaskPriority::kUsual) {
