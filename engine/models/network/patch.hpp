@@ -146,7 +146,7 @@ struct Patch {
   // Memory of the patch, with its lists.
   std::size_t bytes() const;
 
-  // For those who make the patch. Units of a node from the origin:
+  // Used while a patch is made. Units of a node from the origin:
   std::int32_t x_of(const Node& n) const { return static_cast<std::int32_t>(n.x - x); }
   std::int32_t z_of(const Node& n) const { return static_cast<std::int32_t>(n.z - z); }
   // True if a disc touches the square, or guide points around it.

@@ -24,8 +24,9 @@ constexpr std::uint32_t kMagic = 0x44454750;  // "PGED"
 // This bit of its change marks an edit of the ground that is not whole. Programs that do not know
 // it reject the block.
 constexpr std::uint8_t kPart = 0x80;
-// This bit marks a river whose points have their discharge. The others have it by speed and width.
+// This bit marks a river with the discharge of its points; that of others follows from their speed.
 constexpr std::uint8_t kDischarge = 0x40;
+constexpr auto kRiver = static_cast<std::uint8_t>(models::GroundChange::kRiver);
 using Bytes = std::vector<std::byte>;
 
 tl::unexpected<core::Error> broken(core::BlockCoord block, std::string_view why) {
@@ -110,7 +111,9 @@ class BlockReader {
       GroundEdit e;
       e.id = in_.get<std::uint32_t>();
       const auto marked = in_.get<std::uint8_t>();
-      const auto change = static_cast<std::uint8_t>(marked & ~(kPart | kDischarge));
+      const bool has_discharge = (marked & ~kPart) == (kRiver | kDischarge);
+      const int marks = has_discharge ? kPart | kDischarge : kPart;
+      const auto change = static_cast<std::uint8_t>(marked & ~marks);
       if (change > static_cast<std::uint8_t>(models::GroundChange::kLake) ||
           change == static_cast<std::uint8_t>(models::GroundChange::kRoad))
         return wrong(fmt::format("{} is not a type of ground edit", change));
@@ -132,8 +135,7 @@ class BlockReader {
         map->heights_m = in_.get_all<float>(std::size_t{map->columns} * map->rows);
         e.map = std::move(map);
       }
-      if (e.change == models::GroundChange::kRiver)
-        e.river = read_river((marked & kDischarge) != 0);
+      if (e.change == models::GroundChange::kRiver) e.river = read_river(has_discharge);
       if (e.change == models::GroundChange::kLake) e.lake = read_lake();
       if (in_.failed()) return {};
       if (!is_next_id(e.id, i > 0 ? edits.ground.back()->id : 0))

@@ -55,7 +55,7 @@ bool is_sound(const models::RiverPiece& river, double relief_m) {
     sound = sound && is_near(p.at_m) && is_in(length2, 0.99, 1.01) &&
             is_in(p.half_width_m, 1e-3, kMaxRiverWidthM) && is_in(p.surface_m, 0, relief_m) &&
             is_in(p.bed_m, 0, p.surface_m) && is_in(p.bank_m, 1e-3, kMaxRiverBankM) &&
-            is_in(p.speed_m_s, 0, 100) && is_in(p.discharge_m3_s, 0, 1e8) &&
+            is_in(p.speed_m_s, 0, 100) && is_in(p.discharge_m3_s, 0, kMaxDischarge) &&
             is_in(p.fall, 0, 1e6) && is_in(p.foam, 0, 1);
   }
   for (const models::RiverNeighbour& n : river.near)

@@ -229,7 +229,8 @@ TEST_F(EditBytes, AStoredStampIsAlwaysSquare) {
   EXPECT_EQ(encode_block(loaded, registry, {2, 4}), whole);
 }
 
-// Edits that make their whole change have the bytes of older programs, and those reject the others.
+// Edits that make their whole change have the bytes of older programs, except rivers, which have
+// their discharge; older programs reject the others.
 TEST_F(EditBytes, StrengthAndBlendOfAnEditAreStored) {
   models::GroundEdit flat;
   flat.change = models::GroundChange::kFlatten;

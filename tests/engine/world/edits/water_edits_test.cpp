@@ -145,6 +145,41 @@ TEST_F(WaterByHand, BytesOfTheBlocksInAnyOrderGiveTheSameWater) {
   EXPECT_GT(rivers, 0);
 }
 
+// The blocks of older programs have no discharge of a river's points.
+TEST_F(WaterByHand, RiversWithoutADischargeGetThatOfTheirSpeed) {
+  ASSERT_TRUE(edits_.add_river(world_, brook()));
+  const core::BlockCoord block = changed_blocks({}, edits_).front();
+  std::vector<std::byte> bytes = encode_block(edits_, registry(), block);
+  const models::GroundEdit& edit = *edits_.layer()->block(block)->ground.front();
+  const std::vector<models::RiverPoint>& points = edit.river->points;
+  const auto first = std::bit_cast<std::array<std::byte, 8>>(points[0].at_m.x);
+  const auto found = std::ranges::search(bytes, first);
+  ASSERT_FALSE(found.empty());
+  auto at = found.begin();
+  for (std::size_t i = 0; i < points.size(); ++i) {  // 11 numbers stay, the discharge goes
+    const auto after = std::next(at, 11 * sizeof(double));
+    at = bytes.erase(after, std::next(after, sizeof(double)));
+  }
+  constexpr std::size_t kChange = 4 + 2 + 3 * 4 + 4;  // magic, version, counts, id
+  ASSERT_NE(bytes[kChange] & std::byte{0x40}, std::byte{0});
+  bytes[kChange] &= std::byte{0xBF};
+  Edits loaded;
+  const auto ok = load_block(loaded, world_, registry(), block, bytes);
+  ASSERT_TRUE(ok) << ok.error().message;
+  const auto& old = loaded.layer()->block(block)->ground.front()->river->points;
+  ASSERT_EQ(old.size(), points.size());
+  for (std::size_t i = 0; i < old.size(); ++i) {
+    const models::RiverPoint& p = old[i];
+    EXPECT_EQ(p.foam, points[i].foam);
+    EXPECT_EQ(p.discharge_m3_s, p.speed_m_s * models::cross_section_m2(p));
+    EXPECT_NEAR(p.discharge_m3_s, points[i].discharge_m3_s, 1e-9 * points[i].discharge_m3_s);
+  }
+  // Nothing but a river has a discharge.
+  bytes = encode_block(edits_, registry(), block);
+  bytes[kChange] = std::byte{0x40};
+  EXPECT_FALSE(load_block(loaded, world_, registry(), block, bytes));
+}
+
 TEST_F(WaterByHand, DamagedBytesAreRejected) {
   ASSERT_TRUE(edits_.add_river(world_, brook()));
   const core::BlockCoord block = changed_blocks({}, edits_).front();
