@@ -233,17 +233,18 @@ void CacheMap::paint_rivers(QPainter& painter) {
   painter.fillRect(QRectF(low, size()), QColor(12, 20, 34, 150));
   const QPointF corner = QPointF(rivers_from_camera_m_.x, rivers_from_camera_m_.z) * pixels_per_m();
   const QPointF moved = corner - picture_.corner;
-  if (picture_.rivers != rivers_ || picture_.scale != pixels_per_m() || picture_.size != size() ||
+  const QSize wide = size() + QSize(2 * kPictureMarginPx, 2 * kPictureMarginPx);
+  if (picture_.rivers != rivers_ || picture_.scale != pixels_per_m() ||
+      picture_.pixels.size() != wide * devicePixelRatioF() ||
       std::max(std::abs(moved.x()), std::abs(moved.y())) > kPictureMarginPx)
-    draw_rivers(corner);
+    draw_rivers(corner, wide);
   painter.drawPixmap(low - margin + corner - picture_.corner, picture_.pixels);
 }
 
 // Lines of one look are drawn together. Takes milliseconds.
-void CacheMap::draw_rivers(QPointF corner) {
-  const QSize wide = size() + QSize(2 * kPictureMarginPx, 2 * kPictureMarginPx);
+void CacheMap::draw_rivers(QPointF corner, QSize wide) {
   const double scale = pixels_per_m();
-  picture_ = {rivers_, scale, size(), corner, QPixmap(wide * devicePixelRatioF())};
+  picture_ = {rivers_, scale, corner, QPixmap(wide * devicePixelRatioF())};
   picture_.pixels.setDevicePixelRatio(devicePixelRatioF());
   picture_.pixels.fill(Qt::transparent);
   QPainter painter(&picture_.pixels);

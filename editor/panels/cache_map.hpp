@@ -69,7 +69,7 @@ class CacheMap final : public QWidget {
   const Cell* cell_at(QPointF place) const;
   double pixels_per_m() const;
   void paint_rivers(QPainter& painter);
-  void draw_rivers(QPointF corner);
+  void draw_rivers(QPointF corner, QSize wide);
 
   struct KnownMesh {
     synthesis::MeshHandle mesh;
@@ -83,7 +83,6 @@ class CacheMap final : public QWidget {
   struct RiverPicture {
     std::shared_ptr<const RiverMap> rivers;
     double scale = 0;  // pixels per metre
-    QSize size;        // of the widget
     QPointF corner;    // the map's, in pixels from the camera
     QPixmap pixels;
   };

@@ -151,6 +151,21 @@ TEST(WaterText, TellsBodyDepthAndOfRiversSpeedAndDischarge) {
   EXPECT_THAT(text(1750, 1670), ::testing::MatchesRegex("Lake" + depth));
   EXPECT_THAT(text(1545, 1655), ::testing::MatchesRegex("Sea" + depth));
   EXPECT_EQ(text(2100, 1200), "") << "dry";
+  world::WaterPoint water;
+  water.surface_m = 812.34;
+  water.depth_m = 1.26;
+  water.flow_m_s = {0.3F, -0.4F};
+  water.body = 7;
+  const auto with = [&](std::optional<double> discharge_m3_s) {
+    water.discharge_m3_s = discharge_m3_s;
+    return water_text(water).toStdString();
+  };
+  EXPECT_EQ(with(0.0314), "River: surface 812.3 m, 1.3 m deep, 0.5 m/s, 0.031 m³/s");
+  EXPECT_EQ(with(9.94), "River: surface 812.3 m, 1.3 m deep, 0.5 m/s, 9.9 m³/s");
+  EXPECT_EQ(with(10.2), "River: surface 812.3 m, 1.3 m deep, 0.5 m/s, 10 m³/s");
+  EXPECT_EQ(with(std::nullopt), "Lake: surface 812.3 m, 1.3 m deep");
+  water.body = world::kSea;
+  EXPECT_EQ(with(std::nullopt), "Sea: surface 812.3 m, 1.3 m deep");
 }
 
 TEST_F(RiversInView, ARoadThroughARiverGetsOneMessage) {
