@@ -1,6 +1,7 @@
 // The land that water mirrors, taken from the picture of the landscape without water: the mirrored
 // ray is followed through its depth. It does not reflect things beyond the edges of that picture, or
-// hidden in it. After McGuire and Mara, "Efficient GPU Screen-Space Ray Tracing" (2014).
+// hidden in it; a ray that ends behind a surface mirrors that surface. After McGuire and Mara,
+// "Efficient GPU Screen-Space Ray Tracing" (2014).
 layout(set = 2, binding = PSYGEN_REFLECTION_COLOUR) uniform sampler2D mirror;
 layout(set = 2, binding = PSYGEN_REFLECTION_DEPTH) uniform sampler2D mirror_depth;
 

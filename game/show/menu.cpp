@@ -13,8 +13,8 @@ constexpr float kWidth = 340;
 constexpr std::array<const char*, 4> kQualities{"low", "medium", "high", "ultra"};
 constexpr int kMapCells = 25;  // on each side of the player
 
-// Focuses the next control, and shows that to keys and pads, which act on nothing else. ImGui hides
-// a focus that a program sets since 1.90, and has a function that shows it since 1.91.4.
+// Focuses the next control and draws its highlight, without which keys and pads do not click it.
+// ImGui hides that of a focus that a program sets since 1.90.
 void focus_next() {
   ImGui::SetKeyboardFocusHere();
 #if IMGUI_VERSION_NUM >= 19140
