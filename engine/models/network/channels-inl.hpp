@@ -50,9 +50,8 @@ HWY_INLINE Beside beside(const Curve& c, Float px, Float pz) {
     const Float place = hn::Mul(hn::Add(f, set(static_cast<float>(s))), set(1.0F / Curve::kChords));
     t = hn::IfThenElse(closer, place, t);
   }
-  Beside b;
   const float end_t = static_cast<float>(c.chords) / Curve::kChords;
-  b.t = hn::Min(t, set(end_t));
+  t = hn::Min(t, set(end_t));
   // Beyond an end the next curve shapes the ground.
   const auto past = [&](std::size_t p, std::size_t s, float sign) HWY_ATTR {
     const Float dx = hn::Sub(px, set(c.px[p])), dz = hn::Sub(pz, set(c.pz[p]));
@@ -62,21 +61,21 @@ HWY_INLINE Beside beside(const Curve& c, Float px, Float pz) {
     return hn::Mul(hn::Mul(over, over), set(c.inverse_length2[s]));
   };
   const Float end = hn::IfThenElse(
-      hn::Lt(b.t, set(1e-6F)), past(0, 0, -1),
-      hn::IfThenElseZero(hn::Gt(b.t, set(end_t - 1e-6F)), past(c.chords, c.chords - 1, 1)));
+      hn::Lt(t, set(1e-6F)), past(0, 0, -1),
+      hn::IfThenElseZero(hn::Gt(t, set(end_t - 1e-6F)), past(c.chords, c.chords - 1, 1)));
   const Float sine2 = hn::Div(end, hn::Max(best, set(1e-6F)));
-  b.abeam = hn::Max(hn::Sub(set(1), hn::Mul(sine2, set(4))), hn::Zero(d));
-  b.distance = hn::Sqrt(best);
-  const Float o = hn::Sub(set(1), b.t);
-  const Float twice = hn::Mul(hn::Add(b.t, b.t), set(c.height_m[1] - c.height_m[2]));
+  const Float abeam = hn::Max(hn::Sub(set(1), hn::Mul(sine2, set(4))), hn::Zero(d));
+  const Float distance = hn::Sqrt(best);
+  const Float o = hn::Sub(set(1), t);
+  const Float twice = hn::Mul(hn::Add(t, t), set(c.height_m[1] - c.height_m[2]));
   const Float fall = hn::Mul(o, hn::Add(hn::Mul(o, set(c.height_m[0] - c.height_m[2])), twice));
-  b.surface = hn::Max(hn::Add(set(c.height_m[2]), fall), set(c.min_m));
-  b.width = hn::Add(set(c.width0_m), hn::Mul(b.t, set(c.width1_m - c.width0_m)));
-  b.edge = hn::Sub(b.distance, hn::Mul(b.width, set(0.5F)));
-  b.taper = c.head ? smooth(hn::Min(hn::Add(b.t, b.t), set(1))) : set(1);
-  b.valley = c.head ? smooth(b.t) : set(1);
-  b.near = hn::Lt(b.edge, hn::Add(set(kValleyM), hn::Mul(b.width, set(kBankWidths))));
-  return b;
+  const Float surface = hn::Max(hn::Add(set(c.height_m[2]), fall), set(c.min_m));
+  const Float width = hn::Add(set(c.width0_m), hn::Mul(t, set(c.width1_m - c.width0_m)));
+  const Float edge = hn::Sub(distance, hn::Mul(width, set(0.5F)));
+  const Float taper = c.head ? smooth(hn::Min(hn::Add(t, t), set(1))) : set(1);
+  const Float valley = c.head ? smooth(t) : set(1);
+  const auto near = hn::Lt(edge, hn::Add(set(kValleyM), hn::Mul(width, set(kBankWidths))));
+  return {t, distance, surface, width, edge, taper, abeam, valley, near};
 }
 
 // The vectors of channel_depth_m().
