@@ -122,11 +122,13 @@ done
 
 mkdir "$folder/elsewhere" "$folder/bin"
 mv "$folder/psygen" "$folder/elsewhere/moved here"
-# A program that pkg-config builds against the moved package finds data and modules there, too.
-flags="$(PKG_CONFIG_PATH="$(dirname "$(find "$folder/elsewhere" -name psygen-app.pc)")" \
-  pkg-config --cflags --libs psygen-app vulkan)"
+# A program that pkg-config builds against the moved package finds data and modules there, too. Shared libraries
+# outside of the system's folders must be named to it.
+packages="$(dirname "$(find "$folder/elsewhere" -name psygen-app.pc)")"
+flags="$(PKG_CONFIG_PATH="$packages" pkg-config --cflags --libs psygen-app vulkan)"
 eval "${CXX:-c++} -std=c++20 -g0 '$source/tests/tools/consumer/main.cpp' $flags -o '$folder/by_pkg_config'"
-[ "$(cd / && "$folder/by_pkg_config" "$folder/by_pkg_config.png")" = "$height" ]
+told="$(cd / && LD_LIBRARY_PATH="$(dirname "$packages")" "$folder/by_pkg_config" "$folder/by_pkg_config.png")"
+[ "$told" = "$height" ]
 cmp "$folder/picture.png" "$folder/by_pkg_config.png"
 ln -s "$folder/elsewhere/moved here/bin/psygen" "$folder/bin/psygen"
 for psygen in "$folder/elsewhere/moved here/bin/psygen" "$folder/bin/psygen"; do
