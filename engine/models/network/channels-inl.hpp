@@ -29,8 +29,8 @@ struct Beside {
   Float t;                            // along the curve, 0 … 1
   Float distance;                     // from the middle of the water, m
   Float surface, width, edge, taper;  // edge: distance from the water's edge, < 0 inside
+                                      // taper of bed and banks: 0 at a spring … 1
   Float abeam;                        // 1 beside the curve … 0 beyond its ends
-  Float valley;                       // of banks: 0 at a spring … 1
   hn::Mask<FloatTag> near;            // within the reach of the banks
 };
 
@@ -73,9 +73,8 @@ HWY_INLINE Beside beside(const Curve& c, Float px, Float pz) {
   const Float width = hn::Add(set(c.width0_m), hn::Mul(t, set(c.width1_m - c.width0_m)));
   const Float edge = hn::Sub(distance, hn::Mul(width, set(0.5F)));
   const Float taper = c.head ? smooth(hn::Min(hn::Add(t, t), set(1))) : set(1);
-  const Float valley = c.head ? smooth(t) : set(1);
   const auto near = hn::Lt(edge, hn::Add(set(kValleyM), hn::Mul(width, set(kBankWidths))));
-  return {t, distance, surface, width, edge, taper, abeam, valley, near};
+  return {t, distance, surface, width, edge, taper, abeam, near};
 }
 
 // The vectors of channel_depth_m().
@@ -145,13 +144,9 @@ HWY_INLINE Bank bank_of(const Beside& b) {
     const Float s = hn::Min(hn::Div(edge, hn::Add(set(more), widths)), set(1));
     return hn::Mul(hn::Mul(hn::Sub(set(1), smooth(s)), grown), b.abeam);
   };
-  Bank bank;
-  bank.height = hn::Add(b.surface, hn::Mul(set(kBankRiseM), hn::Min(edge, set(1))));
-  bank.rise = hn::Mul(set(kValleySlope), edge);
-  bank.force = fade(kValleyM, b.valley);
-  bank.levee = fade(kLeveeM, b.taper);
-  bank.dry = hn::And(b.near, hn::Gt(b.edge, hn::Zero(d)));
-  return bank;
+  return {hn::Add(b.surface, hn::Mul(set(kBankRiseM), hn::Min(edge, set(1)))),
+          hn::Mul(set(kValleySlope), edge), fade(kValleyM, b.taper), fade(kLeveeM, b.taper),
+          hn::And(b.near, hn::Gt(b.edge, hn::Zero(d)))};
 }
 // The bed under the water; 1e30 beside it. Beds of springs fade in.
 HWY_INLINE Float bed_of(const Beside& b, Float ground) {

@@ -225,7 +225,7 @@ class Call {
       const Beside b = beside(*c, px, pz);
       const Float bank = hn::Add(set(kLeveeM), hn::Mul(b.width, set(kBankWidths)));
       const Float s = hn::Min(hn::Max(hn::Div(b.edge, bank), hn::Zero(d)), set(1));
-      const Float here = hn::Sub(set(1), hn::Mul(hn::Sub(set(1), s), b.valley));
+      const Float here = hn::Sub(set(1), hn::Mul(hn::Sub(set(1), s), b.taper));
       clear = hn::IfThenElse(b.near, hn::Min(clear, here), clear);
     }
     const Float dry = hn::Sub(set(1), hn::Min(hn::Add(lake.share, lake.share), set(1)));
