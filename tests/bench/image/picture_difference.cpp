@@ -10,10 +10,10 @@
 #include <filesystem>
 #include <vector>
 
-#include "engine/image/compare.hpp"
 #include "engine/image/image_io.hpp"
 #include "tests/bench/image/pictures_in.hpp"
 #include "tests/bench/image/seen_difference.hpp"
+#include "tests/bench/image/structural_similarity.hpp"
 
 namespace {
 
@@ -39,9 +39,9 @@ int main(int argc, char** argv) {
     const auto a = image::read_image(seen[i]), b = image::read_image(reference[i]);
     if (!a || !b) return fail(!a ? a.error().message : b.error().message);
     if (a->width != b->width || a->height != b->height ||
-        std::min(a->width, a->height) < image::kSimilarityWindow)
+        std::min(a->width, a->height) < psygen::bench::kSimilarityWindow)
       return fail(seen[i].string() + ": the two pictures must have one size, 8 pixels at least");
-    const double difference = 1 - image::structural_similarity(*a, *b);
+    const double difference = 1 - psygen::bench::structural_similarity(*a, *b);
     const double apart = 100 * psygen::bench::seen_difference(*a, *b);
     fmt::print("{}  {:.4f}  {:.1f} %\n", seen[i].filename().string(), difference, apart);
     sum += difference;
