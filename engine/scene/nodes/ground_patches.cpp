@@ -38,10 +38,6 @@ synthesis::MeshKey key_of(const TileKey& tile, const models::Parameters& p,
           p.hash()};
 }
 
-models::Parameters parameters_of(const TileKey& tile, const WorldFacts& facts) {
-  return models::ground_patch_parameters(facts.world.layer().get(), tile);
-}
-
 }  // namespace
 
 void GroundPatches::begin(const WorldFacts& facts) {
@@ -69,10 +65,19 @@ void GroundPatches::forget_oldest() {
 
 bool GroundPatches::ready(const WorldFacts& facts, const Daylight& daylight,
                           const visibility::NodeCoord& at) {
-  if (network_ == 0) return true;
+  return ask(models::ground_patches(lit_ground(facts, daylight, at),
+                                    at.level == 0 ? near_water_cells_ : 0));
+}
+
+void GroundPatches::want_around(const WorldFacts& facts, const Daylight& daylight,
+                                core::BlockCoord block) {
+  const auto cells = static_cast<std::int64_t>(kAskedM / facts.world.cell_m());
+  ask(models::ground_patches(lit_ground(facts, daylight, {block, 0}), cells));
+}
+
+bool GroundPatches::ask(const std::vector<TileKey>& tiles) {
   bool all = true;
-  for (const TileKey& tile : models::ground_patches(lit_ground(facts, daylight, at),
-                                                    at.level == 0 ? near_water_cells_ : 0)) {
+  for (const TileKey& tile : tiles) {
     Patch& patch = patches_[tile];
     const bool asked = patch.asked > tick_begin_;
     patch.asked = ++asks_;
@@ -84,10 +89,12 @@ bool GroundPatches::ready(const WorldFacts& facts, const Daylight& daylight,
 }
 
 void GroundPatches::want_all(const WorldFacts& facts, synthesis::MeshSupply& supply) {
+  const models::EditLayer* const layer = facts.world.layer().get();
   parameters_.clear();
   parameters_.reserve(wanted_.size());
   for (const TileKey& tile : wanted_) {
-    const models::Parameters& p = parameters_.emplace_back(parameters_of(tile, facts));
+    const models::Parameters& p =
+        parameters_.emplace_back(models::ground_patch_parameters(layer, tile));
     const synthesis::MeshKey key = key_of(tile, p, facts);
     // A change of the world may have taken the finished request.
     const synthesis::MeshHandle handle = supply.find(key);
@@ -111,7 +118,9 @@ bool GroundPatches::take(const synthesis::Completion& job, const WorldFacts& fac
     core::log_warning("a part of a river network could not be made: " + job.error);
   const TileKey tile{static_cast<int>(job.key.index), job.key.block.x, job.key.block.z};
   const auto known = patches_.find(tile);
-  if (known != patches_.end() && parameters_of(tile, facts).hash() == job.key.parameters_hash)
+  const models::EditLayer* const layer = facts.world.layer().get();
+  if (known != patches_.end() &&
+      models::ground_patch_parameters(layer, tile).hash() == job.key.parameters_hash)
     known->second.made = true;
   supply.forget(job.handle);
   return true;

@@ -21,12 +21,15 @@ class GroundPatches {
  public:
   // About half of what a network's store keeps (models/network/store.hpp).
   static constexpr std::size_t kMaxKnown = 256;
+  static constexpr double kAskedM = 256;
 
   // Begins a tick of a world: wants nothing yet, forgets patches of another network, and keeps
   // kMaxKnown patches or those of the last tick, the last ones that nodes have asked for.
   void begin(const WorldFacts& facts);
   // True if all patches of a node are made, or if the world has no network; wants the others.
   bool ready(const WorldFacts& facts, const Daylight& daylight, const visibility::NodeCoord& at);
+  // Wants those that games ask about the ground around a block, at full detail, within kAskedM.
+  void want_around(const WorldFacts& facts, const Daylight& daylight, core::BlockCoord block);
   // Wants them as requests. Part of the cache system.
   void want_all(const WorldFacts& facts, synthesis::MeshSupply& supply);
   // Takes a finished request. False if it was for something else. Part of the upload system.
@@ -41,6 +44,7 @@ class GroundPatches {
     std::uint64_t asked = 0;  // number of the last time that a node needed it
     bool made = false;
   };
+  bool ask(const std::vector<TileKey>& tiles);
   void forget_oldest();
 
   std::uint64_t network_ = 0;  // its identity; 0: none

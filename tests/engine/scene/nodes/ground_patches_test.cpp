@@ -155,6 +155,27 @@ TEST(GroundPatches, ThatNoNodeAskedForLatelyAreForgotten) {
   }
 }
 
+// Games ask at full detail about places that the scene draws coarsely.
+TEST(GroundPatches, AroundTheCameraAreMadeAtFullDetail) {
+  const world::World world = parsed(network_text());
+  const models::RiverNetwork& network = *world.layer()->ground.network;
+  const auto scene = network_scene(world);
+  for (const core::CameraPose& pose : {pose_at(10, 10), pose_at(-2900, 1700)}) {
+    for (int i = 0; i < 60; ++i)
+      tick_at(*scene, pose);
+    const glm::dvec2 at_m = world.metres(pose.position);
+    for (int x = -4; x <= 4; ++x) {
+      for (int z = -4; z <= 4; ++z) {
+        const auto cells = [&](double m, int k) {
+          return std::llround((m + k * GroundPatches::kAskedM / 4) / world.cell_m());
+        };
+        EXPECT_TRUE(network.ready(network.tile_of(cells(at_m.x, x), cells(at_m.y, z), {})))
+            << x << " " << z;
+      }
+    }
+  }
+}
+
 TEST(GroundPatches, PrefillMakesAllOfThem) {
   const world::World world = parsed(network_text());
   const auto scene = network_scene(world);
