@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <numbers>
 
@@ -10,7 +11,7 @@ namespace {
 
 constexpr double kCellM = 72, kNearM = 190, kFarM = 260;
 constexpr std::size_t kMax = 320;
-constexpr int kStepsBetween = 30;                   // steps between updates of the cells
+constexpr int kStepsBetween = 30;                   // steps between looks around
 constexpr double kDeerSees = 14, kDeerHears = 3.2;  // m, and m per m/s of the player
 constexpr double kDeerWalk = 0.7, kDeerRun = 9, kBirdPace = 8, kFishPace = 0.5, kFishFlees = 3.5;
 constexpr double kCalmS = 6;  // seconds until fear has faded
@@ -34,7 +35,11 @@ void turn_by(Creature& c, double wanted, double most) {
 }  // namespace
 
 void Creatures::step(const core::WorldPosition& player, double loud, double hour, double dt) {
-  if (steps_++ % kStepsBetween == 0) settle_cells(player);
+  const bool first = steps_ == 0;
+  if (steps_++ % kStepsBetween == 0) look_around(player);
+  // One cell a step: each may ask about land that nothing has looked at yet.
+  for (std::size_t i = first ? near_.size() : 1; i > 0; --i)
+    settle_next();
   const double block_m = query_->world().block_size_m();
   const double heard_m = kDeerSees + kDeerHears * loud;
   for (Creature& c : all_) {
@@ -50,29 +55,33 @@ void Creatures::step(const core::WorldPosition& player, double loud, double hour
   }
 }
 
-void Creatures::settle_cells(const core::WorldPosition& player) {
-  const double block_m = query_->world().block_size_m();
-  std::erase_if(all_, [&](const Creature& c) {
-    const bool gone = distance_m(c.home, player, block_m) > kFarM;
-    if (gone) cells_.erase(cell_name(c.cell_x, c.cell_z));
-    return gone;
-  });
-  const glm::dvec3 at = way_m({}, player, block_m);
+void Creatures::look_around(const core::WorldPosition& player) {
+  const glm::dvec3 at = way_m({}, player, query_->world().block_size_m());
+  const auto far_m = [&](std::int32_t x, std::int32_t z) {
+    return std::hypot((x + 0.5) * kCellM - at.x, (z + 0.5) * kCellM - at.z);
+  };
+  std::erase_if(all_, [&](const Creature& c) { return far_m(c.cell_x, c.cell_z) > kFarM; });
+  std::erase_if(settled_, [&](const Cell& c) { return far_m(c.x, c.z) > kFarM; });
+  near_.clear();
   const auto cell = [](double m) { return static_cast<std::int32_t>(std::floor(m / kCellM)); };
   for (std::int32_t z = cell(at.z - kNearM); z <= cell(at.z + kNearM); ++z) {
     for (std::int32_t x = cell(at.x - kNearM); x <= cell(at.x + kNearM); ++x) {
-      const glm::dvec2 middle((x + 0.5) * kCellM - at.x, (z + 0.5) * kCellM - at.z);
-      if (glm::length(middle) < kNearM && !cells_.contains(cell_name(x, z))) settle(x, z);
+      if (far_m(x, z) < kNearM && std::ranges::find(settled_, Cell{x, z}) == settled_.end())
+        near_.push_back({x, z});
     }
   }
+  std::ranges::stable_sort(near_, std::greater(), [&](const Cell& c) { return far_m(c.x, c.z); });
 }
 
-void Creatures::settle(std::int32_t x, std::int32_t z) {
-  if (all_.size() >= kMax) return;
+void Creatures::settle_next() {
+  if (near_.empty() || all_.size() >= kMax) return;
+  const Cell cell = near_.back();
+  near_.pop_back();
+  settled_.push_back(cell);
   const world::World& world = query_->world();
-  core::RandomStream random(world.seed, x, z, 0, kHabitat);
+  core::RandomStream random(world.seed, cell.x, cell.z, 0, kHabitat);
   core::WorldPosition home;
-  home.local = {(x + random.next_unit()) * kCellM, 0, (z + random.next_unit()) * kCellM};
+  home.local = {(cell.x + random.next_unit()) * kCellM, 0, (cell.z + random.next_unit()) * kCellM};
   home = core::normalised(home, world.block_size_m());
   const auto ground = query_->ground(home);
   if (!ground) return;
@@ -81,26 +90,25 @@ void Creatures::settle(std::int32_t x, std::int32_t z) {
   const auto seed = random.next_u64();
   if (ground->water_depth_m > 1.2) {
     if (chance < 0.8)
-      add_group(Kind::kFish, static_cast<int>(random.next_integer(8, 18)), home, seed, x, z);
+      add_group(Kind::kFish, static_cast<int>(random.next_integer(8, 18)), home, seed, cell);
   } else if (ground->water_depth_m == 0 && ground->normal.y > 0.88 && ground->height_m < 170) {
     if (chance < 0.28)
-      add_group(Kind::kDeer, static_cast<int>(random.next_integer(2, 6)), home, seed, x, z);
+      add_group(Kind::kDeer, static_cast<int>(random.next_integer(2, 6)), home, seed, cell);
     if (chance > 0.45)
-      add_group(Kind::kBird, static_cast<int>(random.next_integer(5, 12)), home, seed, x, z);
+      add_group(Kind::kBird, static_cast<int>(random.next_integer(5, 12)), home, seed, cell);
   }
 }
 
 void Creatures::add_group(Kind kind, int count, const core::WorldPosition& home, std::uint64_t seed,
-                          std::int32_t x, std::int32_t z) {
-  cells_.insert(cell_name(x, z));
-  core::RandomStream random(seed, x, z, static_cast<std::uint32_t>(kind), kHabitat);
+                          const Cell& cell) {
+  core::RandomStream random(seed, cell.x, cell.z, static_cast<std::uint32_t>(kind), kHabitat);
   for (int i = 0; i < count; ++i) {
     Creature c;
     c.kind = kind;
     c.seed = random.next_u64();
     c.home = home;
-    c.cell_x = x;
-    c.cell_z = z;
+    c.cell_x = cell.x;
+    c.cell_z = cell.z;
     c.yaw = random.next_real(-3.1, 3.1);
     c.beat = random.next_real(0, 6.2);
     c.at = home;

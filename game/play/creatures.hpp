@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <unordered_set>
 #include <vector>
 
 #include "engine/query/world.hpp"
@@ -39,10 +38,17 @@ class Creatures {
   const std::vector<Creature>& all() const { return all_; }
 
  private:
-  void settle_cells(const core::WorldPosition& player);
-  void settle(std::int32_t x, std::int32_t z);
+  // A square of the land whose creatures come and go together.
+  struct Cell {
+    std::int32_t x = 0, z = 0;
+    bool operator==(const Cell&) const = default;
+  };
+  // Removes creatures that are far away, and notes the cells that are near, the nearest last.
+  void look_around(const core::WorldPosition& player);
+  // Gives the last cell noted its creatures.
+  void settle_next();
   void add_group(Kind kind, int count, const core::WorldPosition& home, std::uint64_t seed,
-                 std::int32_t x, std::int32_t z);
+                 const Cell& cell);
   void step_deer(Creature& c, const glm::dvec3& to_player, double dt);
   void step_bird(Creature& c, const glm::dvec3& to_player, double hour, double dt);
   void step_fish(Creature& c, const glm::dvec3& to_player, double dt);
@@ -52,7 +58,7 @@ class Creatures {
 
   query::World* query_;
   std::vector<Creature> all_;
-  std::unordered_set<std::uint64_t> cells_;  // cells whose creatures exist
+  std::vector<Cell> settled_, near_;  // near_: those to settle
   std::uint64_t steps_ = 0;
 };
 
