@@ -14,7 +14,7 @@ constexpr double kTurn = 4;  // rad/s
 constexpr double kBuildEveryS = 150, kFetchEveryS = 140, kGiveUpS = 12, kTreeM = 30;
 constexpr double kGlideAheadM = 22,
                  kLandM = 30;  // look-ahead in the air; distance at which it lands
-constexpr double kDropM = 5, kDropAheadM = 7, kGlideAtLeastS = 1.5;
+constexpr double kDropM = 3.5, kDropAheadM = 7, kGlideAtLeastS = 1.5;
 constexpr double kRaftCost = 1.1;  // path cost of water with the raft
 constexpr std::size_t kCellsAStep = 500;
 
@@ -138,7 +138,8 @@ bool Pilot::work(Intent& intent, double dt) {
   const Progress& progress = play_->progress();
   if (target.kind == Target::Kind::kStone && progress.stock.stones < kStonesOfCairn)
     intent.use = true;
-  if (progress.stock.stones >= kStonesOfCairn && time_s_ - built_s_ > kBuildEveryS) {
+  if (progress.stock.stones >= kStonesOfCairn && time_s_ - built_s_ > kBuildEveryS &&
+      play_->walker().gait() == Gait::kGround) {
     built_s_ = time_s_;
     intent.build = true;
   }

@@ -76,6 +76,19 @@ TEST(Route, DependsOnlyOnTheSeedAndStaysOnDryGround) {
   EXPECT_NE(other.play->route().cairns[0].local, a.play->route().cairns[0].local);
 }
 
+// The centre of this land is sea for kilometres.
+TEST(Route, BeginsWhereLandIs) {
+  const auto land = Land::load(seed_of("heather"));
+  ASSERT_TRUE(land);
+  query::World query((*land)->world, (*land)->registry);
+  const auto centre = query.ground({});
+  ASSERT_TRUE(centre);
+  EXPECT_GT(centre->water_depth_m, 0);
+  const auto route = find_route(query);
+  ASSERT_TRUE(route) << route.error().message;
+  EXPECT_GT(distance_m({}, route->start, (*land)->world.block_size_m()), 3000);
+}
+
 TEST(Land, AcceptsANumberOrAWordAsSeed) {
   EXPECT_EQ(seed_of("0"), 0U);
   EXPECT_EQ(seed_of("18446744073709551615"), UINT64_MAX);

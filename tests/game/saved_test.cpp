@@ -182,8 +182,12 @@ TEST_F(Saves, AChangedLandKeepsTheGameAndSaysSo) {
 TEST_F(Saves, OnRisenGroundThePlayerStandsOnItAndTheHiddenCairnsMove) {
   auto play = begin();
   play_and_save(file(), *play);
+  std::string steeper = *land_text(3);
+  const std::string slopes = "steepness = 1.4";
+  ASSERT_NE(steeper.find(slopes), std::string::npos);
+  steeper.replace(steeper.find(slopes), slopes.size(), "steepness = 1.7");
   const auto land = *Land::load(3);
-  land->world.terrain.set_real(models::kTerrainReliefM, 300);
+  land->world = *world::parse_world(steeper, "steeper.toml", land->registry);
   auto again = *Play::create(land->world, land->registry);
   const auto saved = Saved::open(file(), *again);
   ASSERT_TRUE(saved) << saved.error().message;
