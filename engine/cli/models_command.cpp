@@ -1,12 +1,14 @@
 // psygen models: lists every model type and every parameter, from the schemas.
 #include <fmt/format.h>
 
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "engine/cli/commands.hpp"
 #include "engine/cli/shipped_files.hpp"
 #include "engine/models/registry.hpp"
+#include "engine/world/placement.hpp"
 
 namespace psygen::cli {
 namespace {
@@ -65,21 +67,37 @@ std::string table_of(const models::Registry& registry) {
   return text;
 }
 
+// The tables [[scatter]] of a world: how many instances each has on a block, and how many stand.
+std::string stands_of(const world::World& world, const models::Registry& registry) {
+  std::string text;
+  const std::vector<double> placed = world::placed_per_block(world, registry);
+  for (std::size_t s = 0; s < placed.size(); ++s) {
+    const world::Scatter& scatter = world.scatter[s];
+    fmt::format_to(std::back_inserter(text),
+                   "\nscatter[{}] {:<12} {:>5} instances a block, {:.1f} stand", s,
+                   registry[scatter.model].name(), scatter.count, placed[s]);
+  }
+  return text.empty() ? text : text + "\n";
+}
+
 class ModelsCommand final : public Command {
  public:
   explicit ModelsCommand(CLI::App& cli)
       : Command(cli, "models", "List every model type and its parameters") {
     command_->add_flag("--json", json_, "Print the list as JSON");
-    command_->add_option("--world", world_, "Include the species of this world");
+    command_->add_option("--world", world_,
+                         "Include the species of this world, and how many instances stand");
   }
 
   int run() override {
     models::Registry registry = models::make_standard_registry();
+    std::string stands;
     if (!world_.empty()) {
       const auto world = load_world(world_, registry);
       if (!world) return fail_with(world.error());
+      if (!json_) stands = stands_of(*world, registry);
     }
-    return print(json_ ? json_of(registry) : table_of(registry));
+    return print(json_ ? json_of(registry) : table_of(registry) + stands);
   }
 
  private:

@@ -14,26 +14,10 @@
 #include "engine/models/edits.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/models/water/water_surface.hpp"
-#include "engine/world/compass.hpp"
-#include "engine/world/ground_blends.hpp"
-#include "engine/world/water.hpp"
+#include "engine/world/spacing.hpp"
 
 namespace psygen::world {
 namespace {
-
-// A random coordinate inside the block that a float represents exactly, so that the height belongs
-// to the returned point.
-double draw_coordinate(core::RandomStream& random, float block_size_m) {
-  const auto drawn = static_cast<float>(random.next_unit() * static_cast<double>(block_size_m));
-  return static_cast<double>(drawn < block_size_m ? drawn : std::nextafter(block_size_m, 0.0F));
-}
-
-// The terrain of the world's function, with stamps and roads but without edits.
-models::Parameters unedited_terrain(const World& world) {
-  models::Parameters p = world.terrain;
-  p.set_edits(world.shaped.layer.get(), 0);
-  return p;
-}
 
 // True if edits may change heights in a block.
 bool has_edited_ground(const World& world, core::BlockCoord block) {
@@ -63,9 +47,9 @@ void place_instances(const World& world, const models::Registry& registry, core:
       auto place = scattering.place(grounds.base, index);
       if (!place) continue;
       if (&grounds.base != &grounds.shown) {
-        const models::GroundPoint point = grounds.shown.at({place->position.x, place->position.z});
-        place->position.y = static_cast<float>(point.height_m);
-        place->normal = point.normal;
+        const glm::dvec2 at_m(place->position.x, place->position.z);
+        place->position.y = static_cast<float>(foot_height_m(scatter, grounds.shown, at_m));
+        place->normal = grounds.shown.at(at_m).normal;
       }
       out.push_back(
           {scatter.model, index, place->position, scattering.parameters(index, place->normal)});
@@ -112,121 +96,35 @@ void place_wanted(const World& world, const models::Registry& registry, core::Bl
 
 }  // namespace
 
-std::span<const models::GroundEdit* const> BlockObstacles::roads() {
-  if (!roads_) {
-    roads_.emplace();
-    if (!world_.shaped.roads.empty() && world_.shaped.layer)
-      *roads_ = world_.shaped.layer->ground.roads_in(models::QuadCoord::of(block_),
-                                                     world_.block_size_m());
-  }
-  return *roads_;
-}
-
-bool BlockObstacles::may_have_water(double margin_m) {
-  if (!world_.shaped.has_water() || !world_.shaped.layer) return false;
-  const auto known = std::ranges::find(water_, margin_m, &std::pair<double, bool>::first);
-  if (known != water_.end()) return known->second;
-  const bool may =
-      world_.shaped.layer->ground.may_have_water(block_, margin_m, world_.block_size_m());
-  return water_.emplace_back(margin_m, may).second;
-}
-
 Scattering::Scattering(const World& world, const models::ModelType& type, const Scatter& scatter,
                        BlockObstacles& block)
-    : world_(world),
-      seed_(world.seed),
-      size_m_(static_cast<float>(world.block_size_m())),
+    : seed_(world.seed),
       type_(type),
       scatter_(scatter),
       specs_(type.parameters()),
       defaults_(models::default_parameters(type)),
       obstacles_(block),
-      block_(block.block()),
-      min_up_(static_cast<float>(std::cos(glm::radians(scatter.max_slope_deg)))),
-      slope_(slope_parameters(type)) {
-  if (scatter.mask.ground != 0) palette_ = drawn_palette(world);
-}
+      search_(world, scatter, block),
+      slope_(slope_parameters(type)) {}
 
-bool Scattering::has_rivers() const {
-  return obstacles_.may_have_water(scatter_.needs_water() ? scatter_.near_water_m : 0);
-}
-
-// True if the limits allow this ground.
-bool Scattering::may_stand(const models::GroundPoint& ground, glm::dvec2 local_m) const {
-  if (!(ground.height_m >= scatter_.min_height_m && ground.height_m <= scatter_.max_height_m &&
-        ground.normal.y >= min_up_))
-    return false;
-  if (scatter_.limits_depth()) {
-    const auto water = water_over(local_m);
-    if (water && water->depth_over(ground.height_m) > scatter_.max_depth_m) return false;
-  }
-  if (!palette_) return true;
-  const GroundKind kind = main_kind(
-      ground_blends(*palette_, static_cast<float>(ground.height_m), ground.normal,
-                    pattern_place(block_, static_cast<double>(size_m_), glm::vec2(local_m))));
-  return (scatter_.mask.ground >> static_cast<unsigned>(kind) & 1U) != 0;
-}
-
-// The surface of the water of the world's function.
-std::optional<WaterSurface> Scattering::water_over(glm::dvec2 local_m) const {
-  return has_rivers() ? function_water_surface(world_, {block_, {local_m.x, 0, local_m.y}})
-                      : sea_surface(world_);
-}
-
-// True if there is water at the position, or on one of two rings of eight places around it.
-bool Scattering::is_near_water(const models::BlockGround& ground, glm::dvec2 corner_m,
-                               glm::dvec2 local_m) const {
-  const auto is_wet = [&](glm::dvec2 at_m) {
-    const auto water = water_over(at_m);
-    return water && water->depth_over(ground.at(corner_m + at_m).height_m) > 0;
-  };
-  if (is_wet(local_m)) return true;
-  for (const double share : {1.0, 0.5}) {
-    for (const glm::dvec2& way : kCompass) {
-      if (is_wet(local_m + way * (share * scatter_.near_water_m))) return true;
-    }
-  }
-  return false;
-}
-
-// True if a road, water or a mask excludes the instance at this position.
-bool Scattering::is_left_out(std::uint32_t index, glm::dvec2 local_m, double ground_m) const {
-  if (!scatter_.limits_depth() && has_rivers()) {
-    const auto water =
-        world_.shaped.layer->ground.water_over(block_, local_m, static_cast<double>(size_m_));
-    if (water && (water->widths <= 0.5 || water->surface_m > ground_m)) return true;
-  }
-  for (const models::GroundEdit* road : obstacles_.roads()) {
-    if (keeps_clear(*road->road, block_, local_m, static_cast<double>(size_m_))) return true;
-  }
-  if (!scatter_.mask.thins()) return false;
-  const glm::dvec2 place_m =
-      glm::dvec2(block_.x, block_.z) * static_cast<double>(size_m_) + local_m;
-  const double share = mask_share(scatter_.mask, seed_, place_m);
-  if (share <= 0 || share >= 1) return share <= 0;
-  core::RandomStream random(seed_, block_.x, block_.z, index, core::Purpose::kMask);
-  return random.next_unit() >= share;
-}
-
-std::optional<Scattering::Foothold> Scattering::place(const models::BlockGround& ground,
-                                                      std::uint32_t index,
-                                                      glm::dvec2 corner_m) const {
-  core::RandomStream random(seed_, block_.x, block_.z, index, core::Purpose::kPosition);
-  for (int i = 0; i < kPlacementTries; ++i) {
-    const double x = draw_coordinate(random, size_m_), z = draw_coordinate(random, size_m_);
-    const models::GroundPoint point = ground.at(corner_m + glm::dvec2(x, z));
-    if (scatter_.has_filter() && !may_stand(point, {x, z})) continue;
-    if (scatter_.needs_water() && !is_near_water(ground, corner_m, {x, z})) continue;
-    if (is_left_out(index, {x, z}, point.height_m)) return std::nullopt;
-    return Foothold{{x, point.height_m, z}, point.normal};
-  }
-  return std::nullopt;
+std::optional<Foothold> Scattering::place(const models::BlockGround& ground, std::uint32_t index,
+                                          glm::dvec2 corner_m) const {
+  auto found = search_.find(ground, index, corner_m);
+  if (!found) return found;
+  const glm::dvec2 at_m(found->position.x, found->position.z);
+  if (scatter_.keeps_apart() && obstacles_.others().is_crowded(index, at_m, ground, corner_m))
+    return std::nullopt;
+  if (scatter_.footprint_m > 0)
+    found->position.y = static_cast<float>(foot_height_m(scatter_, ground, corner_m + at_m));
+  return found;
 }
 
 models::Parameters Scattering::parameters(std::uint32_t index, const glm::vec3& normal) const {
   models::Parameters p = defaults_;
-  core::RandomStream values(seed_, block_.x, block_.z, index, core::Purpose::kParameters);
-  core::RandomStream seeds(seed_, block_.x, block_.z, index, core::Purpose::kSeed);
+  core::RandomStream values(seed_, obstacles_.block().x, obstacles_.block().z, index,
+                            core::Purpose::kParameters);
+  core::RandomStream seeds(seed_, obstacles_.block().x, obstacles_.block().z, index,
+                           core::Purpose::kSeed);
   for (std::size_t i = 0; i < specs_.size(); ++i) {
     const ParameterRange& range = scatter_.ranges[i];
     if (specs_[i].source == models::ParameterSource::kPlaced) {
@@ -239,7 +137,8 @@ models::Parameters Scattering::parameters(std::uint32_t index, const glm::vec3& 
       p.set_real(i, range.low == range.high ? range.low : std::min(drawn, range.high));
     }
   }
-  set_slope(type_, slope_, glm::vec2(normal.x, normal.z) / -normal.y, p);
+  set_slope(type_, slope_,
+            static_cast<float>(scatter_.tilt) * (glm::vec2(normal.x, normal.z) / -normal.y), p);
   return p;
 }
 

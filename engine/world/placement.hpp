@@ -10,16 +10,14 @@
 #include <glm/vec3.hpp>
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "engine/models/registry.hpp"
 #include "engine/models/terrain/ground.hpp"
+#include "engine/world/place_search.hpp"
 #include "engine/world/world.hpp"
 
 namespace psygen::world {
-
-struct WaterSurface;  // water.hpp
 
 // The index of a block's terrain among its meshes. Indices of models start at 0.
 inline constexpr std::uint32_t kTerrainIndex = UINT32_MAX;
@@ -37,32 +35,10 @@ struct Placement {
   models::Parameters parameters;
 };
 
-// An instance tries this many random positions until its Scatter allows one.
-inline constexpr int kPlacementTries = 24;
-
 // Indices of the parameters `slope_x` and `slope_z` in a schema; −1 if the type lacks them.
 using SlopeParameters = std::array<int, 2>;
 // The indices for a model type.
 SlopeParameters slope_parameters(const models::ModelType& type);
-
-// The roads and the water of the world's function on a block, found when they are first asked for.
-// One thread.
-class BlockObstacles {
- public:
-  // `world` must outlive it.
-  BlockObstacles(const World& world, core::BlockCoord block) : world_(world), block_(block) {}
-  core::BlockCoord block() const { return block_; }
-  // The roads that may cross the block.
-  std::span<const models::GroundEdit* const> roads();
-  // True if there may be rivers or lakes within so many metres.
-  bool may_have_water(double margin_m);
-
- private:
-  const World& world_;
-  core::BlockCoord block_;
-  std::optional<std::vector<const models::GroundEdit*>> roads_;
-  std::vector<std::pair<double, bool>> water_;  // answers by margin
-};
 
 // One scatter on one block, with the single steps of place_models().
 class Scattering {
@@ -71,14 +47,8 @@ class Scattering {
   Scattering(const World& world, const models::ModelType& type, const Scatter& scatter,
              BlockObstacles& block);
 
-  // The position of an instance, in metres from the block's corner.
-  struct Foothold {
-    glm::vec3 position{0.0F};
-    glm::vec3 normal{0, 1, 0};  // of the ground
-  };
-  // The first allowed position that instance `index` of the block tries. Nothing if no position is
-  // allowed, or if a mask, a road or water excludes the one found. `ground` is the ground of the
-  // block, or of a larger node in which the block's corner is at `corner_m`.
+  // The position of an instance, as PlaceSearch::find(). Nothing also if it must give way to
+  // another one (Spacing).
   std::optional<Foothold> place(const models::BlockGround& ground, std::uint32_t index,
                                 glm::dvec2 corner_m = {0, 0}) const;
   // The parameters of instance `index` on ground with this normal. Types with the parameters
@@ -86,25 +56,13 @@ class Scattering {
   models::Parameters parameters(std::uint32_t index, const glm::vec3& normal = {0, 1, 0}) const;
 
  private:
-  // True if rivers or lakes may be where instances look for water.
-  bool has_rivers() const;
-  bool may_stand(const models::GroundPoint& ground, glm::dvec2 local_m) const;
-  bool is_near_water(const models::BlockGround& ground, glm::dvec2 corner_m,
-                     glm::dvec2 local_m) const;
-  std::optional<WaterSurface> water_over(glm::dvec2 local_m) const;
-  bool is_left_out(std::uint32_t index, glm::dvec2 local_m, double ground_m) const;
-
-  const World& world_;
   std::uint64_t seed_;
-  float size_m_;
   const models::ModelType& type_;
   const Scatter& scatter_;
   std::span<const models::ParameterSpec> specs_;
   models::Parameters defaults_;
   BlockObstacles& obstacles_;
-  core::BlockCoord block_;
-  float min_up_;
-  std::optional<Palette> palette_;  // set if the mask selects kinds of ground
+  PlaceSearch search_;
   SlopeParameters slope_;
 };
 

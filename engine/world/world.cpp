@@ -101,7 +101,7 @@ std::vector<double> placed_per_block(const World& world, const models::Registry&
     const std::size_t s = counts.size();
     wanted.push_back(s >= known.size() || !known[s]);
     counts.push_back(wanted[s] ? scatter.count : *known[s]);
-    filtered = filtered || scatter.has_filter();
+    filtered = filtered || scatter.has_filter() || scatter.keeps_apart();
   }
   if (!filtered || std::ranges::find(wanted, true) == wanted.end()) return counts;
   for (std::size_t s = 0; s < counts.size(); ++s)

@@ -67,6 +67,14 @@ struct Scatter {
   double max_depth_m = std::numeric_limits<double>::infinity();
   double near_water_m = std::numeric_limits<double>::infinity();
   ScatterMask mask;  // further restriction within these limits
+  // Diameter of the disc around each instance that overlaps no disc of another instance with a
+  // spacing (spacing.hpp); 0: none. `count` is then the number of candidates.
+  double spacing_m = 0;
+  // Side of the square foot, along the axes: an instance stands on the lowest ground below it; 0:
+  // on that below its middle.
+  double footprint_m = 0;
+  double tilt = 1;  // share of the ground's slope, for types with a slope
+  bool keeps_apart() const { return spacing_m > 0; }
   bool limits_depth() const { return max_depth_m < std::numeric_limits<double>::infinity(); }
   bool needs_water() const { return near_water_m < std::numeric_limits<double>::infinity(); }
   // True if any limit or mask excludes ground.

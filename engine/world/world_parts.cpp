@@ -36,6 +36,8 @@ std::uint64_t hash_of_places(const models::ModelType& type, const Scatter& scatt
   if (scatter.limits_depth() || scatter.needs_water())
     for (const double limit : {scatter.max_depth_m, scatter.near_water_m, level_m})
       hash = with_real(hash, limit);
+  for (const double rule : {scatter.spacing_m, scatter.footprint_m})
+    if (rule > 0) hash = with_real(hash, rule);
   return core::combine(hash, mask_hash(scatter.mask));
 }
 
@@ -48,7 +50,7 @@ std::uint64_t hash_of_models(const World& world, const models::Registry& registr
     hash = core::combine(hash, part);
   for (const ParameterRange& range : scatter.ranges)
     hash = with_real(with_real(hash, range.low), range.high);
-  return hash;
+  return scatter.tilt < 1 ? with_real(hash, scatter.tilt) : hash;
 }
 
 }  // namespace
@@ -63,6 +65,12 @@ WorldParts parts_of(const World& world, const models::Registry& registry) {
     parts.models.push_back(hash_of_models(world, registry, scatter, first));
     first += scatter.count;
   }
+  // Instances that keep apart depend on all others that do.
+  std::uint64_t apart = 0;
+  for (std::size_t s = 0; s < world.scatter.size(); ++s)
+    if (world.scatter[s].keeps_apart()) apart = core::combine(apart, parts.places[s]);
+  for (std::size_t s = 0; s < world.scatter.size(); ++s)
+    if (world.scatter[s].keeps_apart()) parts.places[s] = core::combine(parts.places[s], apart);
   return parts;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <glm/common.hpp>
 
 #include "engine/core/assert.hpp"
 #include "engine/core/rounding.hpp"
@@ -87,6 +88,10 @@ void BlockGround::world_of(std::int32_t block_index, std::int64_t first,
     out[i] = shape_.world_of(block_index, first + static_cast<std::int64_t>(i));
 }
 
+std::uint16_t BlockGround::known(std::size_t vertex) const {
+  return mesh_.empty() ? (*heights_)[vertex] : height_in_mesh(mesh_, vertex);
+}
+
 std::vector<std::uint16_t> BlockGround::quantised_vertices() const {
   const core::RoundToNearest rounding;
   std::array<std::int64_t, kMaxTerrainSize> columns, rows;
@@ -114,7 +119,7 @@ BlockGround::Corners BlockGround::corners_of(double x, double z, int step) const
     const auto aside = static_cast<std::size_t>(step), below = aside * vertices_;
     const std::array at{first, first + aside, first + below, first + below + aside};
     for (std::size_t i = 0; i < 4; ++i)
-      heights[i] = mesh_.empty() ? (*heights_)[at[i]] : height_in_mesh(mesh_, at[i]);
+      heights[i] = known(at[i]);
     return heights;
   }
   const auto first_x = static_cast<std::int64_t>(x), first_z = static_cast<std::int64_t>(z);
@@ -134,7 +139,7 @@ void BlockGround::heights(std::span<std::uint16_t> out) const {
                "all heights are known, and there is room for each");
   const core::RoundToNearest rounding;
   for (std::size_t i = 0; i < out.size(); ++i)
-    out[i] = mesh_.empty() ? (*heights_)[i] : height_in_mesh(mesh_, i);
+    out[i] = known(i);
 }
 
 GroundPoint BlockGround::at(glm::dvec2 local_xz, int stride) const {
@@ -156,6 +161,35 @@ GroundPoint BlockGround::at(glm::dvec2 local_xz, int stride) const {
     ground.normal = unit_normal((h[3] - h[2]) / cell_m, (h[3] - h[1]) / cell_m);
   }
   return ground;
+}
+
+double BlockGround::lowest_m(glm::dvec2 middle_m, double half_m, int stride) const {
+  const double cell_m = stride * shape_.cell_m;
+  const glm::dvec2 low = glm::floor((middle_m - half_m) / cell_m);
+  const glm::ivec2 count = glm::ivec2(glm::ceil((middle_m + half_m) / cell_m) - low) + 1;
+  const auto places = [&](double first, int n, std::int32_t block_index) {
+    std::vector<std::int64_t> out;
+    for (int i = 0; i < n; ++i)
+      out.push_back(shape_.world_of(block_index, stride * (static_cast<std::int64_t>(first) + i)));
+    return out;
+  };
+  std::uint16_t lowest = UINT16_MAX;
+  const glm::dvec2 last = low + glm::dvec2(count - 1);
+  if (is_inside(stride * low.x, stride * low.y, 0) &&
+      is_inside(stride * last.x, stride * last.y, 0)) {
+    const glm::ivec2 first(low);
+    for (int z = first.y; z < first.y + count.y; ++z) {
+      for (int x = first.x; x < first.x + count.x; ++x)
+        lowest = std::min(lowest, known(static_cast<std::size_t>(stride * z) * vertices_ +
+                                        static_cast<std::size_t>(stride * x)));
+    }
+  } else {
+    const auto columns = places(low.x, count.x, block_.x), rows = places(low.y, count.y, block_.z);
+    std::vector<float> noise(columns.size() * rows.size());
+    shape_.evaluate(columns, rows, noise, columns.size(), shape_.detail());
+    lowest = shape_.quantise(std::ranges::min(noise));
+  }
+  return static_cast<double>(shape_.relief_m) * lowest / 65535.0;
 }
 
 void sample_ground(const Parameters& terrain, core::BlockCoord block,

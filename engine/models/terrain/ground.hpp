@@ -34,11 +34,18 @@ class BlockGround {
   // it unchanged. A mesh with too few vertices fails an assertion, also in release.
   BlockGround(const Parameters& terrain, core::BlockCoord block, std::span<const std::byte> mesh);
 
+  // 0: the ground of a block; else of a node of that level, of coarser vertices.
+  int node_level() const { return shape_.node_level; }
   // Returns the ground under a point, in metres from the block's corner. The point may be outside
   // the block (within 10^6 cells). About 20 ns inside a block whose heights were evaluated or read,
   // else 1 µs, or 30 µs with a river network and erosion. With the stride of a coarser level
   // (terrain_strides()): the ground of that level.
   GroundPoint at(glm::dvec2 local_xz, int stride = 1) const;
+
+  // Returns the lowest height of the vertices of all cells that a square touches: no ground in it
+  // is lower. `half_m` is half its side, up to kMaxHalfM. As at(), and 1 ns more for each vertex.
+  static constexpr double kMaxHalfM = 50;
+  double lowest_m(glm::dvec2 middle_m, double half_m, int stride = 1) const;
 
   // Writes the quantised heights of all vertices, row by row (z outer, x inner), as the mesh of
   // level 0 has them (core::TerrainVertex::height). `out` has size² elements. The heights must have
@@ -51,6 +58,7 @@ class BlockGround {
   using Corners = std::array<std::uint16_t, 4>;
 
   std::vector<std::uint16_t> quantised_vertices() const;
+  std::uint16_t known(std::size_t vertex) const;  // its height
   void world_of(std::int32_t block_index, std::int64_t first, std::span<std::int64_t> out) const;
   bool is_inside(double x, double z, int step) const;
   Corners corners_of(double x, double z, int step) const;

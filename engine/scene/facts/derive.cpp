@@ -12,6 +12,7 @@
 
 #include "engine/core/cancellation.hpp"
 #include "engine/core/hash.hpp"
+#include "engine/core/log.hpp"
 #include "engine/models/terrain/ground_patch.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/models/water/water_surface.hpp"
@@ -106,8 +107,16 @@ core::Result<void> find_levels(const SceneSettings& settings, WorldFacts& facts,
   for (int level = 0; level < models::kTerrainLevels; ++level)
     facts.grids.emplace_back(size, level);
   if (facts.levels[0].mesh_level != 0) facts.tiles.emplace(size);
-  derived.placed =
-      world::placed_per_block(facts.world, facts.registry, known_placed(derived.parts, before));
+  const auto known = known_placed(derived.parts, before);
+  derived.placed = world::placed_per_block(facts.world, facts.registry, known);
+  for (std::size_t s = 0; s < derived.placed.size(); ++s) {
+    const world::Scatter& scatter = facts.world.scatter[s];
+    if (scatter.count > 0 && derived.placed[s] == 0 && (s >= known.size() || !known[s]))
+      core::log_warning(fmt::format(
+          "scatter[{}] ({}): none of its {} instances finds a place on {} blocks; its limits may "
+          "exclude all ground",
+          s, facts.registry[scatter.model].name(), scatter.count, world::kSizeBlocks));
+  }
   const world::FarCover cover = world::far_cover(facts.world, *scatters, derived.placed);
   facts.canopy = canopy_of(facts.world, cover.albedo);
   facts.cover_share = cover.share;

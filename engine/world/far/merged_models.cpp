@@ -250,8 +250,8 @@ void MergedType::add_instance(Instance& instance, const Scattering& scattering,
   if (!place) return;
   instance.place = place->position;
   const glm::dvec2 in_node = block.in_node_m + glm::dvec2(place->position.x, place->position.z);
-  instance.place.y =
-      static_cast<float>(making.node_ground.at(in_node, making.drawn_stride).height_m);
+  instance.place.y = static_cast<float>(
+      foot_height_m(far.scatter(), making.node_ground, in_node, making.drawn_stride));
   const Parameters p = scattering.parameters(instance.index);
   const glm::vec3 foot = instance.place + glm::vec3(block.in_node_m.x, 0, block.in_node_m.y);
   const bool sways = making.plan.form_level == 1;
@@ -393,6 +393,11 @@ std::uint64_t merged_identity(const World& world, const models::Registry& regist
       add_real(world.water.level_m);
     }
     if (const std::uint64_t mask = mask_hash(s.mask); mask != 0) add(mask);
+    if (s.keeps_apart() || s.footprint_m > 0 || s.tilt < 1) {
+      add_real(s.spacing_m);
+      add_real(s.footprint_m);
+      add_real(s.tilt);
+    }
   }
   if (const std::uint64_t shape = shape_hash(world); shape != 0) add(shape);
   if (const std::uint64_t places = places_hash(world, registry); places != 0) {

@@ -204,7 +204,8 @@ double work_of(const World& world, std::span<const FarScatter> scatters, const L
     const bool measured = how.form == Form::kPicture && plan.form_level == 1;
     if (how.mesh != nullptr) sum += 30.0 * how.mesh->vertices * static_cast<double>(how.forms);
     const double make = !how.each_is_synthesised && !measured ? 500 : far.is_leafy() ? 3000 : 400;
-    const double search = far.scatter().has_filter() ? 200 : 0;
+    const double search =
+        (far.scatter().has_filter() ? 200 : 0) + (far.scatter().keeps_apart() ? 300 : 0);
     sum += (make + search) * static_cast<double>(how.forms) + std::ldexp(80, 2 * plan.level);
   }
   return sum + 100;

@@ -176,6 +176,13 @@ inline constexpr auto visit_place = [](auto& scatter, const auto& visit) {
       in("m", {0, 1e4}, {0, 5}, "deepest water with instances; default: none in rivers and lakes"));
   visit("near_water_m", scatter.near_water_m,
         in("m", {0.1, 1000}, {1, 50}, "instances stand at most this far from water"));
+  visit("spacing_m", scatter.spacing_m,
+        in("m", {0, 1e5}, {0, 20},
+           "diameter of a disc around each instance; discs of instances do not overlap"));
+  visit("footprint_m", scatter.footprint_m,
+        in("m", {0, 100}, {0, 20},
+           "side of the foot: instances stand on the lowest ground below it"));
+  visit("tilt", scatter.tilt, fraction("share of the ground's slope that rocks lean by"));
 };
 
 // The numbers of a ScatterMask. Stamps have them too.

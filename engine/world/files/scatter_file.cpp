@@ -19,6 +19,7 @@ namespace {
 
 // log2 of the maximum number of triangles of all models of one block.
 constexpr double kMaxLog2BlockCost = 26;
+constexpr int kMaxSpacingSides = 4, kMaxWithinSpacing = 4096;
 constexpr Limits kMaskPlaces{-1e12, 1e12};  // metres
 constexpr Limits kPlacePoints{-kFarthestShapeM, kFarthestShapeM};
 
@@ -90,6 +91,29 @@ std::int64_t read_count(TableReader& reader) {
   std::int64_t count = 0;
   reader.read("count", count, {0, kMaxModelsPerBlock}, Presence::kRequired);
   return count;
+}
+
+// Reports spacings that reach too far, or over too many candidates to try.
+void check_spacing(TableReader& root, int line, const World& world) {
+  double candidates = 0, widest_m = 0;
+  for (const Scatter& scatter : world.scatter) {
+    if (!scatter.keeps_apart()) continue;
+    candidates += scatter.count;
+    widest_m = std::max(widest_m, scatter.spacing_m);
+  }
+  const double sides = widest_m / world.block_size_m();
+  if (sides > kMaxSpacingSides)
+    return root.problem(
+        line, "scatter",
+        fmt::format("spacing_m = {:g} is too much: allowed are {} sides of a block, {:g} m",
+                    widest_m, kMaxSpacingSides, kMaxSpacingSides * world.block_size_m()));
+  const double within = 4 * sides * sides * candidates;
+  if (within > kMaxWithinSpacing)
+    root.problem(line, "scatter",
+                 fmt::format("instances with a spacing of {:g} m have {:.0f} others within reach, "
+                             "too many (allowed: {}); lower spacing_m or count",
+                             widest_m, within, kMaxWithinSpacing),
+                 core::ErrorCode::kOverBudget);
 }
 
 // Reads one [[scatter]]. Returns log2 of its largest number of triangles per block.
@@ -190,6 +214,7 @@ void read_scatters(TableReader& root, const models::Registry& registry, const Be
                  fmt::format("{} models on each block are too many (allowed: {})",
                              models_per_block(world), kMaxModelsPerBlock),
                  core::ErrorCode::kOverBudget);
+  check_spacing(root, line, world);
   if (triangles > std::exp2(kMaxLog2BlockCost))
     root.problem(line, "scatter",
                  fmt::format("the models of one block together are too large (predicted: up to "
@@ -220,6 +245,9 @@ void write_scatters(const World& world, const models::Registry& registry, std::s
       fmt::format_to(out, "max_slope_deg = {}\n", scatter.max_slope_deg);
     if (scatter.limits_depth()) fmt::format_to(out, "max_depth_m = {}\n", scatter.max_depth_m);
     if (scatter.needs_water()) fmt::format_to(out, "near_water_m = {}\n", scatter.near_water_m);
+    if (scatter.keeps_apart()) fmt::format_to(out, "spacing_m = {}\n", scatter.spacing_m);
+    if (scatter.footprint_m > 0) fmt::format_to(out, "footprint_m = {}\n", scatter.footprint_m);
+    if (scatter.tilt < 1) fmt::format_to(out, "tilt = {}\n", scatter.tilt);
     write_mask(scatter.mask, text);
     for (std::size_t i = 0; i < scatter.ranges.size(); ++i) {
       const models::ParameterSpec& spec = type.parameters()[i];
