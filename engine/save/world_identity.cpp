@@ -72,8 +72,8 @@ void add_limits(Facts& facts, const world::Scatter& scatter) {
   facts.add("max_slope_deg", scatter.max_slope_deg, usual.max_slope_deg);
   facts.add("max_depth_m", scatter.max_depth_m, usual.max_depth_m);
   facts.add("near_water_m", scatter.near_water_m, usual.near_water_m);
-  facts.add("spacing_m", scatter.spacing_m, usual.spacing_m);
-  facts.add("footprint_m", scatter.footprint_m, usual.footprint_m);
+  // A spacing changes which instances stand. Only the first one moves them.
+  if (scatter.keeps_apart()) facts.add("keeps_apart");
   if (const std::uint64_t mask = world::mask_hash(scatter.mask); mask != 0) facts.add("mask", mask);
 }
 

@@ -28,12 +28,6 @@ glm::dvec2 draw_place(core::RandomStream& random, double block_m) {
   return {x, coordinate()};
 }
 
-double foot_height_m(const Scatter& scatter, const models::BlockGround& ground, glm::dvec2 at_m,
-                     int stride) {
-  return scatter.footprint_m > 0 ? ground.lowest_m(at_m, scatter.footprint_m / 2, stride)
-                                 : ground.at(at_m, stride).height_m;
-}
-
 BlockObstacles::BlockObstacles(const World& world, core::BlockCoord block)
     : world_(world), block_(block) {}
 BlockObstacles::~BlockObstacles() = default;

@@ -61,10 +61,6 @@ struct Foothold {
   glm::vec3 normal{0, 1, 0};  // of the ground
 };
 
-// The height on which an instance at this place of a ground stands: the lowest below its foot.
-double foot_height_m(const Scatter& scatter, const models::BlockGround& ground, glm::dvec2 at_m,
-                     int stride = 1);
-
 // One scatter on one block.
 class PlaceSearch {
  public:

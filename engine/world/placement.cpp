@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/trigonometric.hpp>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -25,10 +26,31 @@ bool has_edited_ground(const World& world, core::BlockCoord block) {
          world.edits->ground.edits.reaches(models::QuadCoord::of(block), world.block_size_m());
 }
 
+bool has_edited_ground(const World& world) {
+  return world.edits && !world.edits->ground.edits.empty();
+}
+// True if places on a block depend on ground beyond its border.
+bool looks_beyond(const World& world) {
+  return std::ranges::any_of(world.scatter, [](const Scatter& scatter) {
+    return scatter.keeps_apart() || scatter.needs_water() || scatter.footprint_m > 0;
+  });
+}
+
 // The ground on which instances find their positions, and the ground on which they stand.
 struct Grounds {
   const models::BlockGround &base, &shown;
+  double block_m;
 };
+
+// The lowest ground below the foot of an instance; infinite without a foot. Beyond the block's
+// border no edit counts, so that an edit there changes nothing here.
+double foot_m(const Scatter& scatter, const Grounds& grounds, glm::dvec2 at_m) {
+  if (scatter.footprint_m <= 0) return std::numeric_limits<double>::infinity();
+  const double half_m = scatter.footprint_m / 2;
+  const bool is_inside =
+      std::min(at_m.x, at_m.y) >= half_m && std::max(at_m.x, at_m.y) <= grounds.block_m - half_m;
+  return (is_inside ? grounds.shown : grounds.base).lowest_m(at_m, half_m);
+}
 
 // The placements of the world's function that were not removed. `wanted` selects scatters; null:
 // all.
@@ -48,8 +70,10 @@ void place_instances(const World& world, const models::Registry& registry, core:
       if (!place) continue;
       if (&grounds.base != &grounds.shown) {
         const glm::dvec2 at_m(place->position.x, place->position.z);
-        place->position.y = static_cast<float>(foot_height_m(scatter, grounds.shown, at_m));
-        place->normal = grounds.shown.at(at_m).normal;
+        const models::GroundPoint point = grounds.shown.at(at_m);
+        place->position.y =
+            static_cast<float>(std::min(point.height_m, foot_m(scatter, grounds, at_m)));
+        place->normal = point.normal;
       }
       out.push_back(
           {scatter.model, index, place->position, scattering.parameters(index, place->normal)});
@@ -82,11 +106,12 @@ void place_wanted(const World& world, const models::Registry& registry, core::Bl
   const core::RoundToNearest rounding;
   out.clear();
   const models::BlockEdits* const edits = world.edits ? world.edits->block(block) : nullptr;
-  if (has_edited_ground(world, block)) {
+  const double block_m = world.block_size_m();
+  if (has_edited_ground(world, block) || (has_edited_ground(world) && looks_beyond(world))) {
     const models::BlockGround base(unedited_terrain(world), block, models_per_block(world));
-    place_instances(world, registry, block, {base, ground}, edits, wanted, out);
+    place_instances(world, registry, block, {base, ground, block_m}, edits, wanted, out);
   } else {
-    place_instances(world, registry, block, {ground, ground}, edits, wanted, out);
+    place_instances(world, registry, block, {ground, ground, block_m}, edits, wanted, out);
   }
   if (edits != nullptr) place_by_hand(*edits, registry, ground, kPlacedIndex, out);
   if (!world.places.by_block) return;
@@ -115,7 +140,8 @@ std::optional<Foothold> Scattering::place(const models::BlockGround& ground, std
   if (scatter_.keeps_apart() && obstacles_.others().is_crowded(index, at_m, ground, corner_m))
     return std::nullopt;
   if (scatter_.footprint_m > 0)
-    found->position.y = static_cast<float>(foot_height_m(scatter_, ground, corner_m + at_m));
+    found->position.y =
+        static_cast<float>(ground.lowest_m(corner_m + at_m, scatter_.footprint_m / 2));
   return found;
 }
 

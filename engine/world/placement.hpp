@@ -88,16 +88,15 @@ std::vector<std::uint16_t> ground_of_block(const World& world, core::BlockCoord 
 double ground_margin(const World& world, int node_level);
 
 // An upper bound of the placements of one block without edits: the sum of all counts. Exact for
-// worlds in which no scatter has a filter and no road or water crosses the block.
+// worlds in which no scatter has a filter or a spacing and no road or water crosses the block.
 std::size_t models_per_block(const World& world);
 
 // Replaces `out` by the placements of `block`, by ascending index. An instance that finds no
-// allowed position in kPlacementTries tries is skipped; the indices of the others do not change.
-// Takes about 10 µs for the block's heights and 0.1 µs for each model. Does not check that the
-// world contains the block.
-// Edits: instances find their positions on the unedited ground and stand on the edited ground.
-// Removed instances are skipped. The models placed by edits follow, by ascending id, then those
-// placed by the world file.
+// allowed position (PlaceSearch) or gives way (Spacing) is skipped; the indices of the others do
+// not change. Takes about 10 µs for the block's heights and 0.1 µs for each model, and 15 µs where
+// models keep apart. Does not check that the world contains the block. Edits: instances find their
+// positions on the unedited ground and stand on the edited ground. Removed instances are skipped.
+// The models placed by edits follow, by ascending id, then those placed by the world file.
 void place_models(const World& world, const models::Registry& registry, core::BlockCoord block,
                   std::vector<Placement>& out);
 // The same for a caller that already has the block's ground, with the block's edits.
@@ -114,9 +113,9 @@ void place_models(const World& world, const models::Registry& registry, core::Bl
 float road_at(const World& world, core::BlockCoord block, glm::dvec2 local_m);
 
 // The mean number of instances per block that find a position, for each scatter. Exact if no
-// scatter has a filter and there are no roads; otherwise the mean over kSizeBlocks blocks, always
-// the same ones. `known` holds results that the caller already has, such as those of a world with
-// the same scatters (world_parts.hpp).
+// scatter has a filter or a spacing and there are no roads; otherwise the mean over kSizeBlocks
+// blocks, always the same ones. `known` holds results that the caller already has, such as those of
+// a world with the same scatters (world_parts.hpp).
 std::vector<double> placed_per_block(const World& world, const models::Registry& registry,
                                      std::span<const std::optional<double>> known = {});
 

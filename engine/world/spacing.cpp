@@ -35,7 +35,7 @@ Spacing::Beside& Spacing::beside(glm::ivec2 offset) {
       std::unique_ptr<Beside>(new Beside{offset, BlockObstacles(world_, block), {}, {}}));
   Beside& made = *beside_.back();
   if (!world_.contains(block)) return made;
-  // Those that no instance of our block reaches are left out.
+  // Skips candidates beyond the reach of our block.
   const glm::dvec2 low = -glm::dvec2(offset) * size_m_ - widest_m_;
   const glm::dvec2 high = low + size_m_ + 2 * widest_m_;
   for (std::uint32_t s = 0; s < world_.scatter.size(); ++s) {
@@ -81,8 +81,12 @@ bool Spacing::is_allowed(Beside& block, Candidate& candidate, const models::Bloc
 
 bool Spacing::is_crowded(std::uint32_t index, glm::dvec2 at_m, const models::BlockGround& ground,
                          glm::dvec2 corner_m) {
-  const Candidate& own = *std::ranges::find(beside({0, 0}).candidates, index, &Candidate::index);
-  const double spacing_m = world_.scatter[own.scatter].spacing_m;
+  const auto scatter =
+      static_cast<std::uint32_t>(std::ranges::upper_bound(firsts_, index) - firsts_.begin() - 1);
+  core::RandomStream random(world_.seed, block_.x, block_.z, index, core::Purpose::kPosition);
+  Candidate own{draw_place(random, size_m_), 0, index, scatter, {}};
+  own.turn = random.next_u64();
+  const double spacing_m = world_.scatter[scatter].spacing_m;
   const double reach_m = (spacing_m + widest_m_) / 2;
   const auto block_at = [this](double m) { return static_cast<int>(std::floor(m / size_m_)); };
   for (int z = block_at(at_m.y - reach_m); z <= block_at(at_m.y + reach_m); ++z) {

@@ -1,9 +1,8 @@
 // Keeps instances of scatters with a spacing apart. Each owns a disc of this diameter, and no two
-// discs overlap. An instance gives way to each instance within reach that its own scatter allows
-// and that comes first: the larger spacing, then the earlier scatter, then a random number. It does
-// so even if that one gives way to a third. So nothing depends on instances farther away than one
-// spacing, nor on the order of questions: the bits are the same from both sides of every border.
-// One thread.
+// discs overlap. An instance is left out if an instance of higher priority, which its own scatter
+// allows, lies within reach, even if that one is left out too. Priority: the larger spacing, the
+// earlier scatter, a random number. So nothing depends on instances farther away than one spacing,
+// nor on the order of questions: the bits are the same from both sides of every border. One thread.
 #pragma once
 
 #include <cstdint>

@@ -119,11 +119,12 @@ std::optional<Route> route_from(query::World& query, query::PathFinder& finder,
 }
 
 // Tries suitable starts on growing circles around the centre of the land, among hills of at least
-// this height. Returns the first route, or none.
-std::optional<Route> first_route(query::World& query, double highest_m, double hills_m) {
+// this height and apart from those tried before. Returns the first route, or none.
+std::optional<Route> first_route(query::World& query, double highest_m, double hills_m,
+                                 std::vector<core::WorldPosition>& tried) {
   query::PathFinder finder(query, {.max_cells = kMaxCells});
-  std::vector<core::WorldPosition> tried;
-  for (int ring = 0; ring < kRings && tried.size() < kStarts; ++ring) {
+  const std::size_t end = tried.size() + kStarts;
+  for (int ring = 0; ring < kRings; ++ring) {
     // Land may be far away.
     const double far_m = kRingM * ring * std::max(1.0, ring / kNearRings);
     const int places = std::clamp(6 * ring, 1, kPlacesOfRing);
@@ -137,6 +138,7 @@ std::optional<Route> first_route(query::World& query, double highest_m, double h
       if (land.highest_m - land.lowest_m < hills_m) continue;
       if (auto route = route_from(query, finder, at)) return route;
       tried.push_back(at);
+      if (tried.size() == end) return std::nullopt;
     }
   }
   return std::nullopt;
@@ -145,8 +147,9 @@ std::optional<Route> first_route(query::World& query, double highest_m, double h
 }  // namespace
 
 core::Result<Route> find_route(query::World& query) {
-  auto route = first_route(query, kHighestStartM, kHillsM);
-  if (!route) route = first_route(query, kHighestM, 0);
+  std::vector<core::WorldPosition> tried;
+  auto route = first_route(query, kHighestStartM, kHillsM, tried);
+  if (!route) route = first_route(query, kHighestM, 0, tried);
   if (route) return *route;
   return core::invalid_argument("this land has no route for twelve cairns; choose another seed");
 }

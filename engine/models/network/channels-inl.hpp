@@ -26,12 +26,12 @@ HWY_INLINE Float smooth(Float t) {
 
 // The position of a vector of samples against a channel.
 struct Beside {
-  Float t;                            // along the curve, 0 … 1
-  Float distance;                     // from the middle of the water, m
-  Float surface, width, edge, taper;  // edge: distance from the water's edge, < 0 inside
-                                      // taper of bed and banks: 0 at a spring … 1
-  Float abeam;                        // 1 beside the curve … 0 beyond its ends
-  hn::Mask<FloatTag> near;            // within the reach of the banks
+  Float t;                     // along the curve, 0 … 1
+  Float distance;              // from the middle of the water, m
+  Float surface, width, edge;  // edge: distance from the water's edge, < 0 inside
+  Float taper;                 // of bed and banks: 0 at a spring … 1
+  Float abeam;                 // 1 beside the curve … 0 beyond its ends
+  hn::Mask<FloatTag> near;     // within the reach of the banks
 };
 
 HWY_INLINE Beside beside(const Curve& c, Float px, Float pz) {

@@ -43,8 +43,8 @@ class BlockGround {
   GroundPoint at(glm::dvec2 local_xz, int stride = 1) const;
 
   // Returns the lowest height of the vertices of all cells that a square touches: no ground in it
-  // is lower. `half_m` is half its side, up to kMaxHalfM. As at(), and 1 ns more for each vertex.
-  static constexpr double kMaxHalfM = 50;
+  // is lower. 1 ns for each vertex inside a block with known heights, else as at() and an
+  // evaluation of each vertex.
   double lowest_m(glm::dvec2 middle_m, double half_m, int stride = 1) const;
 
   // Writes the quantised heights of all vertices, row by row (z outer, x inner), as the mesh of

@@ -113,8 +113,8 @@ core::Result<void> find_levels(const SceneSettings& settings, WorldFacts& facts,
     const world::Scatter& scatter = facts.world.scatter[s];
     if (scatter.count > 0 && derived.placed[s] == 0 && (s >= known.size() || !known[s]))
       core::log_warning(fmt::format(
-          "scatter[{}] ({}): none of its {} instances finds a place on {} blocks; its limits may "
-          "exclude all ground",
+          "scatter[{}] ({}): none of its {} instances finds a place on {} blocks; limits or "
+          "spacing may leave none",
           s, facts.registry[scatter.model].name(), scatter.count, world::kSizeBlocks));
   }
   const world::FarCover cover = world::far_cover(facts.world, *scatters, derived.placed);

@@ -19,12 +19,17 @@ using models::network::TileKey;
 // view.
 constexpr auto kGroup = synthesis::RankGroup::kDrawn;
 
-// The largest distance at which models look for water, in cells.
-std::int64_t near_water_cells(const world::World& world) {
-  double farthest_m = 0;
+// How far beyond a block its models ask about the ground, in cells. Whole blocks answer about the
+// candidates that keep apart.
+std::int64_t asked_cells(const world::World& world) {
+  double farthest_m = 0, widest_m = 0;
   for (const world::Scatter& scatter : world.scatter) {
     if (scatter.needs_water()) farthest_m = std::max(farthest_m, scatter.near_water_m);
+    farthest_m = std::max(farthest_m, scatter.footprint_m / 2);
+    widest_m = std::max(widest_m, scatter.spacing_m);
   }
+  const double block_m = world.block_size_m();
+  farthest_m += std::ceil(widest_m / block_m) * block_m;
   return static_cast<std::int64_t>(std::ceil(farthest_m / world.cell_m()));
 }
 
@@ -46,7 +51,7 @@ void GroundPatches::begin(const WorldFacts& facts) {
   const std::uint64_t identity = network != nullptr ? network->identity() : 0;
   if (identity != network_) patches_.clear();
   network_ = identity;
-  near_water_cells_ = near_water_cells(facts.world);
+  asked_cells_ = asked_cells(facts.world);
   if (patches_.size() > kMaxKnown) forget_oldest();
   tick_begin_ = asks_;
 }
@@ -65,14 +70,16 @@ void GroundPatches::forget_oldest() {
 
 bool GroundPatches::ready(const WorldFacts& facts, const Daylight& daylight,
                           const visibility::NodeCoord& at) {
-  return ask(models::ground_patches(lit_ground(facts, daylight, at),
-                                    at.level == 0 ? near_water_cells_ : 0));
+  if (network_ == 0) return true;
+  return ask(
+      models::ground_patches(lit_ground(facts, daylight, at), at.level == 0 ? asked_cells_ : 0));
 }
 
 void GroundPatches::want_around(const WorldFacts& facts, const Daylight& daylight,
                                 core::BlockCoord block) {
+  if (network_ == 0) return;
   const auto cells = static_cast<std::int64_t>(kAskedM / facts.world.cell_m());
-  ask(models::ground_patches(lit_ground(facts, daylight, {block, 0}), cells));
+  static_cast<void>(ask(models::ground_patches(lit_ground(facts, daylight, {block, 0}), cells)));
 }
 
 bool GroundPatches::ask(const std::vector<TileKey>& tiles) {

@@ -28,7 +28,8 @@ class GroundPatches {
   void begin(const WorldFacts& facts);
   // True if all patches of a node are made, or if the world has no network; wants the others.
   bool ready(const WorldFacts& facts, const Daylight& daylight, const visibility::NodeCoord& at);
-  // Wants those that games ask about the ground around a block, at full detail, within kAskedM.
+  // Requests the patches within kAskedM of a block (at most 512 cells) at full detail, because
+  // games ask about the ground there.
   void want_around(const WorldFacts& facts, const Daylight& daylight, core::BlockCoord block);
   // Wants them as requests. Part of the cache system.
   void want_all(const WorldFacts& facts, synthesis::MeshSupply& supply);
@@ -48,7 +49,7 @@ class GroundPatches {
   void forget_oldest();
 
   std::uint64_t network_ = 0;  // its identity; 0: none
-  std::int64_t near_water_cells_ = 0;
+  std::int64_t asked_cells_ = 0;
   std::uint64_t asks_ = 0, tick_begin_ = 0;  // so far, and before this tick
   std::unordered_map<TileKey, Patch, models::network::TileKeyHash> patches_;
   std::vector<TileKey> wanted_;

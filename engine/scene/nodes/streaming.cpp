@@ -162,7 +162,7 @@ void streaming_system(StreamingContext context, Streaming& streaming, GroundPatc
   // Only modelers make patches; a frame that waits for all meshes has none before it.
   const bool patient = rules.request && !rules.wait;
   patches.begin(facts);
-  if (rules.request) patches.want_around(facts, context.daylight, camera.pose.position.block);
+  if (patient) patches.want_around(facts, context.daylight, camera.pose.position.block);
   std::vector<visibility::NodeCoord> waiting;  // the most important first
   const double heights_s = facts.world.has_costly_heights() ? kHeightsSeconds : 0;
   while (!streaming.missing.empty() && !may_wait(streaming.missing.back())) {

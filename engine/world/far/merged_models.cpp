@@ -250,8 +250,12 @@ void MergedType::add_instance(Instance& instance, const Scattering& scattering,
   if (!place) return;
   instance.place = place->position;
   const glm::dvec2 in_node = block.in_node_m + glm::dvec2(place->position.x, place->position.z);
-  instance.place.y = static_cast<float>(
-      foot_height_m(far.scatter(), making.node_ground, in_node, making.drawn_stride));
+  instance.place.y =
+      static_cast<float>(making.node_ground.at(in_node, making.drawn_stride).height_m);
+  if (far.scatter().footprint_m > 0) {  // as far below the ground as near
+    const glm::dvec2 in_tile = in_node - block.in_node_m + block.in_tile_m;
+    instance.place.y -= static_cast<float>(making.ground->at(in_tile).height_m) - place->position.y;
+  }
   const Parameters p = scattering.parameters(instance.index);
   const glm::vec3 foot = instance.place + glm::vec3(block.in_node_m.x, 0, block.in_node_m.y);
   const bool sways = making.plan.form_level == 1;

@@ -181,8 +181,8 @@ inline constexpr auto visit_place = [](auto& scatter, const auto& visit) {
            "diameter of a disc around each instance; discs of instances do not overlap"));
   visit("footprint_m", scatter.footprint_m,
         in("m", {0, 100}, {0, 20},
-           "side of the foot: instances stand on the lowest ground below it"));
-  visit("tilt", scatter.tilt, fraction("share of the ground's slope that rocks lean by"));
+           "side of the square footprint: instances stand on the lowest ground below it"));
+  visit("tilt", scatter.tilt, fraction("share of the ground's slope that grass leans by"));
 };
 
 // The numbers of a ScatterMask. Stamps have them too.

@@ -19,7 +19,7 @@ namespace {
 
 // log2 of the maximum number of triangles of all models of one block.
 constexpr double kMaxLog2BlockCost = 26;
-constexpr int kMaxSpacingSides = 4, kMaxWithinSpacing = 4096;
+constexpr int kMaxSpacingSides = 4, kMaxWithinSpacing = 8192, kMaxFootCells = 64;
 constexpr Limits kMaskPlaces{-1e12, 1e12};  // metres
 constexpr Limits kPlacePoints{-kFarthestShapeM, kFarthestShapeM};
 
@@ -107,7 +107,8 @@ void check_spacing(TableReader& root, int line, const World& world) {
         line, "scatter",
         fmt::format("spacing_m = {:g} is too much: allowed are {} sides of a block, {:g} m",
                     widest_m, kMaxSpacingSides, kMaxSpacingSides * world.block_size_m()));
-  const double within = 4 * sides * sides * candidates;
+  // The strips of blocks that a search walks through.
+  const double within = 2 * sides * (2 * std::ceil(sides) + 1) * candidates;
   if (within > kMaxWithinSpacing)
     root.problem(line, "scatter",
                  fmt::format("instances with a spacing of {:g} m have {:.0f} others within reach, "
@@ -129,6 +130,11 @@ double read_scatter(TableReader& reader, const models::Registry& registry, const
   visit_place(scatter, FieldReader{reader});
   if (scatter.min_height_m > scatter.max_height_m)
     reader.problem(reader.line(), "min_height_m", "it must not be above max_height_m");
+  if (const double max_m = std::min(kMaxFootCells * world.cell_m(), world.block_size_m() / 2);
+      scatter.footprint_m > max_m)
+    reader.problem("footprint_m",
+                   fmt::format("it must be at most {:g} m: half a block's side and {} cells", max_m,
+                               kMaxFootCells));
   read_scatter_mask(reader, beside, world, scatter.mask);
   ModelFields fields = read_model_fields(reader, registry[scatter.model], true);
   reader.finish();

@@ -133,6 +133,4 @@ TEST(Flicker, OneChannelIsEnoughAndAlphaIsIgnored) {
 
 }  // namespace
 
-namespace {}  // namespace
-
 }  // namespace psygen::image

@@ -7,8 +7,10 @@
 #include <map>
 
 #include "engine/world/edits/edits.hpp"
+#include "engine/world/far/merged_models.hpp"
 #include "engine/world/far/node_walk.hpp"
 #include "engine/world/placement.hpp"
+#include "engine/world/world_parts.hpp"
 #include "tests/engine/world/shipped.hpp"
 
 namespace psygen::world {
@@ -256,6 +258,62 @@ TEST(Tilt, IsAShareOfTheSlope) {
   EXPECT_GT(*std::ranges::max_element(a), 0.1);
 }
 
+// Two blocks on both sides of the seam of an endless world, and the border of a bounded one.
+TEST(Spacing, HoldsAtTheSeamAndInBoundedWorlds) {
+  const World world = parsed(wood("spacing_m = 20"));
+  const auto west = standing(world, {INT32_MAX, 4}), east = standing(world, {INT32_MIN, 4});
+  ASSERT_FALSE(west.empty() || east.empty());
+  for (const Placement& a : west) {
+    for (const Placement& b : east) {
+      if (a.index >= 90 || b.index >= 90) continue;
+      EXPECT_GE(std::hypot(64 + b.position.x - a.position.x, b.position.z - a.position.z), 20);
+    }
+  }
+  const World bounded = parsed(testing::replaced(wood(), "blocks = [0, 0]", "blocks = [1, 1]"));
+  const std::size_t alone = standing(bounded, {0, 0}).size();
+  EXPECT_GT(alone, standing(parsed(wood()), {0, 0}).size());
+  EXPECT_FALSE(standing(bounded, {5, 0}).empty());  // which nobody draws
+}
+
+// An edit that does not reach a block changes nothing there, whoever asks first.
+TEST(Spacing, FollowsNoEditBeyondTheBorder) {
+  World world = parsed(wood("spacing_m = 5\nfootprint_m = 12\nmax_slope_deg = 40") +
+                       "[water]\nlevel_m = 40\n[[scatter]]\nmodel = \"rock\"\ncount = 40\n"
+                       "spacing_m = 4\nnear_water_m = 30\n");
+  std::vector<std::vector<Placement>> before;
+  for (int z = 0; z < 4; ++z)
+    before.push_back(standing(world, {3, z}));
+  Edits edits;
+  for (int z = 0; z < 4; ++z) {
+    core::WorldPosition at{{2, z}, {64 - 9, 0, 32}};
+    ASSERT_TRUE(edits.raise(world, at, 6, -25));
+  }
+  set_edits(world, edits.layer());
+  for (int z = 0; z < 4; ++z) {
+    const auto after = standing(world, {3, z});
+    ASSERT_EQ(after.size(), before[static_cast<std::size_t>(z)].size());
+    for (std::size_t i = 0; i < after.size(); ++i) {
+      const Placement& was = before[static_cast<std::size_t>(z)][i];
+      EXPECT_EQ(after[i].index, was.index);
+      EXPECT_EQ(after[i].position, was.position);
+    }
+  }
+}
+
+TEST(Spacing, IsWrittenAndTellsTheTablesThatItConcerns) {
+  const World world = parsed(wood("spacing_m = 5\nfootprint_m = 3\ntilt = 0.25"));
+  const World again = parsed(write_world(world, registry()));
+  EXPECT_EQ(again.scatter, world.scatter);
+  const World wider = parsed(wood("spacing_m = 5\nfootprint_m = 3\ntilt = 0.25", "spacing_m = 4"));
+  const World tilted = parsed(wood("spacing_m = 5\nfootprint_m = 3\ntilt = 0.5"));
+  const WorldParts parts = parts_of(world, registry());
+  EXPECT_NE(parts_of(wider, registry()).places[0], parts.places[0]);
+  EXPECT_EQ(parts_of(tilted, registry()).places, parts.places);
+  EXPECT_NE(parts_of(tilted, registry()).models[0], parts.models[0]);
+  EXPECT_NE(merged_identity(wider, registry()), merged_identity(world, registry()));
+  EXPECT_NE(merged_identity(tilted, registry()), merged_identity(world, registry()));
+}
+
 TEST(Spacing, ThatReachesTooFarIsRefused) {
   const auto problem = [](std::string_view of_trees) {
     const auto world = parse_world(wood(of_trees), "wood.toml", registry());
@@ -264,6 +322,7 @@ TEST(Spacing, ThatReachesTooFarIsRefused) {
   EXPECT_EQ(problem("spacing_m = 100"), "");
   EXPECT_NE(problem("spacing_m = 300").find("4 sides of a block, 256 m"), std::string::npos);
   EXPECT_NE(problem("spacing_m = 250").find("others within reach"), std::string::npos);
+  EXPECT_NE(problem("footprint_m = 40").find("at most 32 m"), std::string::npos);
   EXPECT_NE(problem("spacing_m = -1").find("spacing_m"), std::string::npos);
   EXPECT_NE(problem("spacing_m = nan").find("spacing_m"), std::string::npos);
 }
