@@ -42,6 +42,8 @@ arm64_root() {
   packages="$(grep -oE '\b(lib[a-z0-9.+-]+|nlohmann-json3)-dev\b' tools/setup.sh | grep -vE 'openmpi|clang' | sort -u | paste -sd,)"
   mmdebstrap --variant=extract --architectures=arm64 --include="$packages,zlib1g-dev,fonts-dejavu-core" \
     "$(. /etc/os-release && echo "$VERSION_CODENAME")" "$PSYGEN_SYSROOT"
+  # No script of a package runs, so the alternatives of BLAS and LAPACK, which OpenImageIO needs, are set here.
+  ln -sfn blas/libblas.so.3 lapack/liblapack.so.3 "$PSYGEN_SYSROOT/usr/lib/aarch64-linux-gnu"
   local link
   find "$PSYGEN_SYSROOT" -type l -lname '/*' | while read -r link; do
     ln -sfn "$PSYGEN_SYSROOT$(readlink "$link")" "$link"
