@@ -90,8 +90,9 @@ constexpr double kMinHeight = 0.25;  // of the camera above ground, in heights o
 
 // The text with its only scatter without limits of the ground, and with one instance per block.
 core::Result<std::string> alone(core::Result<std::string> text) {
-  for (const char* limit : {"min_height_m", "max_height_m", "max_slope_deg", "on_ground",
-                            "mask_image", "mask_area_m", "mask_noise_m"})
+  for (const char* limit :
+       {"min_height_m", "max_height_m", "max_slope_deg", "on_ground", "mask_image", "mask_area_m",
+        "mask_noise_m", "max_depth_m", "near_water_m", "spacing_m"})
     if (text) text = world::without_value(*text, {"scatter", 0, limit});
   if (text) text = world::with_value(*text, {"scatter", 0, "count"}, "1");
   return text;
