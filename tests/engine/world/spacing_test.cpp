@@ -39,10 +39,9 @@ count = 90
          "\n[[scatter]]\nmodel = \"rock\"\ncount = 60\n" + std::string(of_rocks) + "\n";
 }
 
-std::vector<Placement> standing(const World& world, core::BlockCoord block,
-                                const models::Registry& types = registry()) {
+std::vector<Placement> standing(const World& world, core::BlockCoord block) {
   std::vector<Placement> out;
-  place_models(world, types, block, out);
+  place_models(world, registry(), block, out);
   return out;
 }
 
@@ -51,12 +50,11 @@ struct Stand {
   glm::dvec2 at_m;
   double spacing_m;
 };
-std::vector<Stand> stands(const World& world, core::BlockCoord first, int side,
-                          const models::Registry& types = registry()) {
+std::vector<Stand> stands(const World& world, core::BlockCoord first, int side) {
   std::vector<Stand> all;
   for (int z = 0; z < side; ++z) {
     for (int x = 0; x < side; ++x) {
-      for (const Placement& p : standing(world, {first.x + x, first.z + z}, types)) {
+      for (const Placement& p : standing(world, {first.x + x, first.z + z})) {
         std::size_t s = 0;
         for (std::uint32_t end = world.scatter[0].count; p.index >= end;)
           end += world.scatter[++s].count;
@@ -79,13 +77,6 @@ TEST(Spacing, NoTwoDiscsOverlapAcrossBlocks) {
       }
     }
   };
-  models::Registry types = models::make_standard_registry();
-  const auto cairns =
-      parse_world(testing::shipped_text("worlds/cairns.toml"), "cairns.toml", types);
-  ASSERT_TRUE(cairns);
-  const std::vector<Stand> wood_of_cairns = stands(*cairns, {-12, -12}, 20, types);
-  EXPECT_GT(wood_of_cairns.size(), 2000U);
-  expect_apart(wood_of_cairns);
   for (const char* of_trees :
        {"spacing_m = 5", "spacing_m = 90", "spacing_m = 5\nmax_slope_deg = 20"}) {
     const World world = parsed(wood(of_trees));
