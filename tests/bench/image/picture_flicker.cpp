@@ -13,8 +13,8 @@
 #include <cstring>
 #include <numeric>
 
-#include "engine/image/compare.hpp"
 #include "engine/image/image_io.hpp"
+#include "tests/bench/image/flicker.hpp"
 #include "tests/bench/image/pictures_in.hpp"
 
 namespace {
@@ -64,7 +64,7 @@ int main(int argc, char** argv) {
       return fail(files[i].string() + ": the pictures must have one size");
     last.push_back(*std::move(next));
     if (last.size() < 3) continue;
-    const std::vector<std::uint8_t> marks = image::flickering(last[0], last[1], last[2]);
+    const std::vector<std::uint8_t> marks = psygen::bench::flickering(last[0], last[1], last[2]);
     const auto count = std::accumulate(marks.begin(), marks.end(), std::size_t{0});
     shares.push_back(100 * static_cast<double>(count) / static_cast<double>(marks.size()));
     if (argc == 4) {
