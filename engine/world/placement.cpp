@@ -6,7 +6,6 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/trigonometric.hpp>
-#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -20,20 +19,12 @@
 namespace psygen::world {
 namespace {
 
-// True if edits may change heights in a block.
+// True if edits may change heights in a block, or where its instances look beyond it.
 bool has_edited_ground(const World& world, core::BlockCoord block) {
-  return world.edits &&
-         world.edits->ground.edits.reaches(models::QuadCoord::of(block), world.block_size_m());
-}
-
-bool has_edited_ground(const World& world) {
-  return world.edits && !world.edits->ground.edits.empty();
-}
-// True if places on a block depend on ground beyond its border.
-bool looks_beyond(const World& world) {
-  return std::ranges::any_of(world.scatter, [](const Scatter& scatter) {
-    return scatter.keeps_apart() || scatter.needs_water() || scatter.footprint_m > 0;
-  });
+  if (!world.edits) return false;
+  const double block_m = world.block_size_m();
+  return world.edits->ground.edits.hash_of(models::QuadCoord::of(block),
+                                           ground_reach_m(world) / block_m, block_m) != 0;
 }
 
 // The ground on which instances find their positions, and the ground on which they stand.
@@ -42,14 +33,21 @@ struct Grounds {
   double block_m;
 };
 
-// The lowest ground below the foot of an instance; infinite without a foot. Beyond the block's
-// border no edit counts, so that an edit there changes nothing here.
-double foot_m(const Scatter& scatter, const Grounds& grounds, glm::dvec2 at_m) {
-  if (scatter.footprint_m <= 0) return std::numeric_limits<double>::infinity();
+// Moves an instance from the base to the shown ground. A foot that crosses the block's border stays
+// on the base ground, so that an edit beyond the border changes nothing here.
+void stand_on_edits(const Grounds& grounds, const Scatter& scatter, Foothold& place) {
+  const glm::dvec2 at_m(place.position.x, place.position.z);
+  const models::GroundPoint point = grounds.shown.at(at_m);
   const double half_m = scatter.footprint_m / 2;
   const bool is_inside =
       std::min(at_m.x, at_m.y) >= half_m && std::max(at_m.x, at_m.y) <= grounds.block_m - half_m;
-  return (is_inside ? grounds.shown : grounds.base).lowest_m(at_m, half_m);
+  place.normal = point.normal;
+  if (half_m <= 0)
+    place.position.y = static_cast<float>(point.height_m);
+  else if (is_inside)
+    place.position.y = static_cast<float>(grounds.shown.lowest_m(at_m, half_m));
+  else
+    place.position.y = std::min(place.position.y, static_cast<float>(point.height_m));
 }
 
 // The placements of the world's function that were not removed. `wanted` selects scatters; null:
@@ -68,13 +66,7 @@ void place_instances(const World& world, const models::Registry& registry, core:
       if (edits != nullptr && edits->is_removed(index)) continue;
       auto place = scattering.place(grounds.base, index);
       if (!place) continue;
-      if (&grounds.base != &grounds.shown) {
-        const glm::dvec2 at_m(place->position.x, place->position.z);
-        const models::GroundPoint point = grounds.shown.at(at_m);
-        place->position.y =
-            static_cast<float>(std::min(point.height_m, foot_m(scatter, grounds, at_m)));
-        place->normal = point.normal;
-      }
+      if (&grounds.base != &grounds.shown) stand_on_edits(grounds, scatter, *place);
       out.push_back(
           {scatter.model, index, place->position, scattering.parameters(index, place->normal)});
     }
@@ -107,7 +99,7 @@ void place_wanted(const World& world, const models::Registry& registry, core::Bl
   out.clear();
   const models::BlockEdits* const edits = world.edits ? world.edits->block(block) : nullptr;
   const double block_m = world.block_size_m();
-  if (has_edited_ground(world, block) || (has_edited_ground(world) && looks_beyond(world))) {
+  if (has_edited_ground(world, block)) {
     const models::BlockGround base(unedited_terrain(world), block, models_per_block(world));
     place_instances(world, registry, block, {base, ground, block_m}, edits, wanted, out);
   } else {
@@ -137,7 +129,7 @@ std::optional<Foothold> Scattering::place(const models::BlockGround& ground, std
   auto found = search_.find(ground, index, corner_m);
   if (!found) return found;
   const glm::dvec2 at_m(found->position.x, found->position.z);
-  if (scatter_.keeps_apart() && obstacles_.others().is_crowded(index, at_m, ground, corner_m))
+  if (scatter_.keeps_apart() && obstacles_.others().is_crowded(index, ground, corner_m))
     return std::nullopt;
   if (scatter_.footprint_m > 0)
     found->position.y =
@@ -218,6 +210,17 @@ double ground_margin(const World& world, int node_level) {
   const auto size = static_cast<int>(world.terrain.integer(models::kTerrainSize));
   const double cells = models::terrain_strides(size)[1] + 1;
   return std::ldexp(cells / static_cast<double>(size - 1), node_level);
+}
+
+double ground_reach_m(const World& world) {
+  double farthest_m = 0, widest_m = 0;
+  for (const Scatter& scatter : world.scatter) {
+    if (scatter.needs_water()) farthest_m = std::max(farthest_m, scatter.near_water_m);
+    farthest_m = std::max(farthest_m, scatter.footprint_m / 2);
+    widest_m = std::max(widest_m, scatter.spacing_m);
+  }
+  const double block_m = world.block_size_m();
+  return farthest_m + std::ceil(widest_m / block_m) * block_m;
 }
 
 std::size_t models_per_block(const World& world) {

@@ -87,6 +87,10 @@ std::vector<std::uint16_t> ground_of_block(const World& world, core::BlockCoord 
 // Distance beyond a node's border up to which heights affect the node's ground mesh, in blocks.
 double ground_margin(const World& world, int node_level);
 
+// Distance beyond a block up to which its instances look at the ground, in metres. Other blocks
+// answer as a whole about the candidates that keep apart.
+double ground_reach_m(const World& world);
+
 // An upper bound of the placements of one block without edits: the sum of all counts. Exact for
 // worlds in which no scatter has a filter or a spacing and no road or water crosses the block.
 std::size_t models_per_block(const World& world);

@@ -9,6 +9,7 @@
 #include "engine/scene/nodes/daylight.hpp"
 #include "engine/scene/nodes/entities.hpp"
 #include "engine/scene/nodes/mesh_entity.hpp"
+#include "engine/world/placement.hpp"
 
 namespace psygen::scene {
 namespace {
@@ -18,20 +19,6 @@ using models::network::TileKey;
 // Below every group that the main thread may make (PlanLimits::here_up_to), above all meshes out of
 // view.
 constexpr auto kGroup = synthesis::RankGroup::kDrawn;
-
-// How far beyond a block its models ask about the ground, in cells. Whole blocks answer about the
-// candidates that keep apart.
-std::int64_t asked_cells(const world::World& world) {
-  double farthest_m = 0, widest_m = 0;
-  for (const world::Scatter& scatter : world.scatter) {
-    if (scatter.needs_water()) farthest_m = std::max(farthest_m, scatter.near_water_m);
-    farthest_m = std::max(farthest_m, scatter.footprint_m / 2);
-    widest_m = std::max(widest_m, scatter.spacing_m);
-  }
-  const double block_m = world.block_size_m();
-  farthest_m += std::ceil(widest_m / block_m) * block_m;
-  return static_cast<std::int64_t>(std::ceil(farthest_m / world.cell_m()));
-}
 
 // A tile is at least a block wide, so its numbers fit those of blocks.
 synthesis::MeshKey key_of(const TileKey& tile, const models::Parameters& p,
@@ -49,9 +36,13 @@ void GroundPatches::begin(const WorldFacts& facts) {
   wanted_.clear();
   const models::RiverNetwork* const network = facts.world.network();
   const std::uint64_t identity = network != nullptr ? network->identity() : 0;
-  if (identity != network_) patches_.clear();
+  if (identity != network_) {
+    patches_.clear();
+    around_.reset();
+  }
   network_ = identity;
-  asked_cells_ = asked_cells(facts.world);
+  asked_cells_ = static_cast<std::int64_t>(
+      std::ceil(world::ground_reach_m(facts.world) / facts.world.cell_m()));
   if (patches_.size() > kMaxKnown) forget_oldest();
   tick_begin_ = asks_;
 }
@@ -78,8 +69,11 @@ bool GroundPatches::ready(const WorldFacts& facts, const Daylight& daylight,
 void GroundPatches::want_around(const WorldFacts& facts, const Daylight& daylight,
                                 core::BlockCoord block) {
   if (network_ == 0) return;
-  const auto cells = static_cast<std::int64_t>(kAskedM / facts.world.cell_m());
-  static_cast<void>(ask(models::ground_patches(lit_ground(facts, daylight, {block, 0}), cells)));
+  if (!around_ || around_->first != block) {
+    const auto cells = static_cast<std::int64_t>(kAskedM / facts.world.cell_m());
+    around_.emplace(block, models::ground_patches(lit_ground(facts, daylight, {block, 0}), cells));
+  }
+  static_cast<void>(ask(around_->second));
 }
 
 bool GroundPatches::ask(const std::vector<TileKey>& tiles) {

@@ -5,7 +5,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "engine/models/terrain/ground_patch.hpp"
@@ -50,6 +52,8 @@ class GroundPatches {
 
   std::uint64_t network_ = 0;  // its identity; 0: none
   std::int64_t asked_cells_ = 0;
+  // The block that patches were last wanted around, and these.
+  std::optional<std::pair<core::BlockCoord, std::vector<TileKey>>> around_;
   std::uint64_t asks_ = 0, tick_begin_ = 0;  // so far, and before this tick
   std::unordered_map<TileKey, Patch, models::network::TileKeyHash> patches_;
   std::vector<TileKey> wanted_;
