@@ -32,8 +32,8 @@ models::Parameters unedited_terrain(const World& world);
 // z in metres from the block's corner.
 glm::dvec2 draw_place(core::RandomStream& random, double block_m);
 
-// What may keep instances away from a place of a block: the roads and the water of the world's
-// function, and other instances. Found when they are first asked for.
+// Roads, water of the world's function and other instances that may keep an instance away from a
+// place of a block. Found when they are first asked for.
 class BlockObstacles {
  public:
   // `world` must outlive it.

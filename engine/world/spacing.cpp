@@ -6,16 +6,6 @@
 #include <tuple>
 
 namespace psygen::world {
-namespace {
-
-core::BlockCoord moved(core::BlockCoord block, glm::ivec2 by) {
-  const auto sum = [](std::int32_t a, int b) {
-    return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(b));
-  };
-  return {sum(block.x, by.x), sum(block.z, by.y)};
-}
-
-}  // namespace
 
 Spacing::Spacing(const World& world, core::BlockCoord block)
     : world_(world), block_(block), size_m_(world.block_size_m()) {
@@ -27,10 +17,17 @@ Spacing::Spacing(const World& world, core::BlockCoord block)
   }
 }
 
+Spacing::Candidate Spacing::draw(core::BlockCoord block, std::uint32_t scatter,
+                                 std::uint32_t index) const {
+  core::RandomStream random(world_.seed, block.x, block.z, index, core::Purpose::kPosition);
+  const glm::dvec2 at_m = draw_place(random, size_m_);
+  return {at_m, random.next_u64(), index, scatter, {}};
+}
+
 Spacing::Beside& Spacing::beside(glm::ivec2 offset) {
   const auto known = std::ranges::find(beside_, offset, [](const auto& b) { return b->offset; });
   if (known != beside_.end()) return **known;
-  const core::BlockCoord block = moved(block_, offset);
+  const core::BlockCoord block = core::moved(block_, offset.x, offset.y);
   beside_.push_back(
       std::unique_ptr<Beside>(new Beside{offset, BlockObstacles(world_, block), {}, {}}));
   Beside& made = *beside_.back();
@@ -41,11 +38,9 @@ Spacing::Beside& Spacing::beside(glm::ivec2 offset) {
   for (std::uint32_t s = 0; s < world_.scatter.size(); ++s) {
     if (!world_.scatter[s].keeps_apart()) continue;
     for (std::uint32_t k = 0; k < world_.scatter[s].count; ++k) {
-      core::RandomStream random(world_.seed, block.x, block.z, firsts_[s] + k,
-                                core::Purpose::kPosition);
-      const glm::dvec2 at_m = draw_place(random, size_m_);
-      if (glm::all(glm::lessThan(low, at_m)) && glm::all(glm::lessThan(at_m, high)))
-        made.candidates.push_back({at_m, random.next_u64(), firsts_[s] + k, s, {}});
+      const Candidate c = draw(block, s, firsts_[s] + k);
+      if (glm::all(glm::lessThan(low, c.at_m)) && glm::all(glm::lessThan(c.at_m, high)))
+        made.candidates.push_back(c);
     }
   }
   std::ranges::sort(made.candidates, {}, [](const Candidate& c) { return c.at_m.x; });
@@ -58,7 +53,7 @@ bool Spacing::comes_first(const Candidate& a, glm::ivec2 a_block, const Candidat
     return std::tuple(-world_.scatter[c.scatter].spacing_m, c.scatter, ~c.turn, block.x, block.z,
                       c.index);
   };
-  return rank(a, moved(block_, a_block)) < rank(b, block_);
+  return rank(a, core::moved(block_, a_block.x, a_block.y)) < rank(b, block_);
 }
 
 bool Spacing::is_allowed(Beside& block, Candidate& candidate, const models::BlockGround& ground,
@@ -79,20 +74,18 @@ bool Spacing::is_allowed(Beside& block, Candidate& candidate, const models::Bloc
   return *candidate.is_allowed;
 }
 
-bool Spacing::is_crowded(std::uint32_t index, glm::dvec2 at_m, const models::BlockGround& ground,
+bool Spacing::is_crowded(std::uint32_t index, const models::BlockGround& ground,
                          glm::dvec2 corner_m) {
   const auto scatter =
       static_cast<std::uint32_t>(std::ranges::upper_bound(firsts_, index) - firsts_.begin() - 1);
-  core::RandomStream random(world_.seed, block_.x, block_.z, index, core::Purpose::kPosition);
-  Candidate own{draw_place(random, size_m_), 0, index, scatter, {}};
-  own.turn = random.next_u64();
+  const Candidate own = draw(block_, scatter, index);
   const double spacing_m = world_.scatter[scatter].spacing_m;
   const double reach_m = (spacing_m + widest_m_) / 2;
   const auto block_at = [this](double m) { return static_cast<int>(std::floor(m / size_m_)); };
-  for (int z = block_at(at_m.y - reach_m); z <= block_at(at_m.y + reach_m); ++z) {
-    for (int x = block_at(at_m.x - reach_m); x <= block_at(at_m.x + reach_m); ++x) {
+  for (int z = block_at(own.at_m.y - reach_m); z <= block_at(own.at_m.y + reach_m); ++z) {
+    for (int x = block_at(own.at_m.x - reach_m); x <= block_at(own.at_m.x + reach_m); ++x) {
       Beside& block = beside({x, z});
-      const glm::dvec2 corner = glm::dvec2(x, z) * size_m_, place = at_m - corner;
+      const glm::dvec2 corner = glm::dvec2(x, z) * size_m_, place = own.at_m - corner;
       auto next = std::ranges::lower_bound(block.candidates, place.x - reach_m, {},
                                            [](const Candidate& c) { return c.at_m.x; });
       for (; next != block.candidates.end() && next->at_m.x < place.x + reach_m; ++next) {

@@ -21,11 +21,10 @@ class Spacing {
   // `world` must outlive it.
   Spacing(const World& world, core::BlockCoord block);
 
-  // True if instance `index` of the block, at this place of the block, gives way to another.
+  // True if instance `index` of the block gives way to another.
   // `ground` and `corner_m` are those of PlaceSearch::find(). Instances of other blocks stand on
   // the unedited ground of their block, or on `ground` if it is a node's.
-  bool is_crowded(std::uint32_t index, glm::dvec2 at_m, const models::BlockGround& ground,
-                  glm::dvec2 corner_m);
+  bool is_crowded(std::uint32_t index, const models::BlockGround& ground, glm::dvec2 corner_m);
 
  private:
   struct Candidate {
@@ -42,6 +41,7 @@ class Spacing {
     std::optional<models::BlockGround> ground;
   };
   Beside& beside(glm::ivec2 offset);
+  Candidate draw(core::BlockCoord block, std::uint32_t scatter, std::uint32_t index) const;
   bool comes_first(const Candidate& a, glm::ivec2 a_block, const Candidate& b) const;
   bool is_allowed(Beside& block, Candidate& candidate, const models::BlockGround& ground,
                   glm::dvec2 corner_m) const;

@@ -42,6 +42,12 @@ core::ValueCache::Key key_of(Parameters terrain, const TerrainShape& shape,
           static_cast<std::uint64_t>(std::int64_t{block.z})};
 }
 
+// Height on the two triangles of a cell with these corners; u and v are 0 … 1 along x and z.
+double height_on(const std::array<double, 4>& h, double u, double v) {
+  if (u + v <= 1) return h[0] + u * (h[1] - h[0]) + v * (h[2] - h[0]);
+  return h[3] + (1 - u) * (h[2] - h[3]) + (1 - v) * (h[1] - h[3]);
+}
+
 std::uint16_t height_in_mesh(std::span<const std::byte> mesh, std::size_t vertex) {
   core::TerrainVertex v;
   std::memcpy(&v, mesh.data() + vertex * sizeof v, sizeof v);
@@ -142,6 +148,42 @@ void BlockGround::heights(std::span<std::uint16_t> out) const {
     out[i] = known(i);
 }
 
+// The heights of a rectangle of vertices in metres, row by row.
+std::vector<double> BlockGround::vertices_in(glm::i64vec2 first, glm::ivec2 size,
+                                             int stride) const {
+  std::vector<double> heights;
+  heights.reserve(static_cast<std::size_t>(size.x * size.y));
+  const auto end = static_cast<std::int64_t>(vertices_);
+  const auto is_known = [&](std::int64_t from, int n) {
+    return from >= 0 && stride * (from + n - 1) < end;
+  };
+  if (is_known(first.x, size.x) && is_known(first.y, size.y)) {
+    for (int z = 0; z < size.y; ++z) {
+      for (int x = 0; x < size.x; ++x)
+        heights.push_back(
+            metres(known(static_cast<std::size_t>(stride * (first.y + z)) * vertices_ +
+                         static_cast<std::size_t>(stride * (first.x + x)))));
+    }
+    return heights;
+  }
+  const auto places = [&](std::int64_t begin, int n, std::int32_t block_index) {
+    std::vector<std::int64_t> out;
+    for (int i = 0; i < n; ++i)
+      out.push_back(shape_.world_of(block_index, stride * (begin + i)));
+    return out;
+  };
+  const auto columns = places(first.x, size.x, block_.x), rows = places(first.y, size.y, block_.z);
+  std::vector<float> noise(columns.size() * rows.size());
+  shape_.evaluate(columns, rows, noise, columns.size(), shape_.detail());
+  for (const float value : noise)
+    heights.push_back(metres(shape_.quantise(value)));
+  return heights;
+}
+
+double BlockGround::metres(std::uint16_t height) const {
+  return static_cast<double>(shape_.relief_m) * height / 65535.0;
+}
+
 GroundPoint BlockGround::at(glm::dvec2 local_xz, int stride) const {
   const double cell_m = stride * shape_.cell_m;
   const glm::dvec2 cells = local_xz / cell_m;
@@ -149,47 +191,49 @@ GroundPoint BlockGround::at(glm::dvec2 local_xz, int stride) const {
   const double u = cells.x - x, v = cells.y - z;
   const Corners heights = corners_of(stride * x, stride * z, stride);
   std::array<double, 4> h;
-  for (std::size_t i = 0; i < 4; ++i)
-    h[i] = static_cast<double>(shape_.relief_m) * heights[i] / 65535.0;
-
+  std::ranges::transform(heights, h.begin(),
+                         [this](std::uint16_t height) { return metres(height); });
   GroundPoint ground;
-  if (u + v <= 1) {
-    ground.height_m = h[0] + u * (h[1] - h[0]) + v * (h[2] - h[0]);
-    ground.normal = unit_normal((h[1] - h[0]) / cell_m, (h[2] - h[0]) / cell_m);
-  } else {
-    ground.height_m = h[3] + (1 - u) * (h[2] - h[3]) + (1 - v) * (h[1] - h[3]);
-    ground.normal = unit_normal((h[3] - h[2]) / cell_m, (h[3] - h[1]) / cell_m);
-  }
+  ground.height_m = height_on(h, u, v);
+  ground.normal = u + v <= 1 ? unit_normal((h[1] - h[0]) / cell_m, (h[2] - h[0]) / cell_m)
+                             : unit_normal((h[3] - h[2]) / cell_m, (h[3] - h[1]) / cell_m);
   return ground;
 }
 
 double BlockGround::lowest_m(glm::dvec2 middle_m, double half_m, int stride) const {
   const double cell_m = stride * shape_.cell_m;
-  const glm::dvec2 low = glm::floor((middle_m - half_m) / cell_m);
-  const glm::ivec2 count = glm::ivec2(glm::ceil((middle_m + half_m) / cell_m) - low) + 1;
-  const auto places = [&](double first, int n, std::int32_t block_index) {
-    std::vector<std::int64_t> out;
-    for (int i = 0; i < n; ++i)
-      out.push_back(shape_.world_of(block_index, stride * (static_cast<std::int64_t>(first) + i)));
-    return out;
+  const glm::dvec2 low = (middle_m - half_m) / cell_m, high = (middle_m + half_m) / cell_m;
+  const glm::dvec2 first = glm::floor(low), last = glm::max(glm::ceil(high), first + 1.0);
+  const glm::ivec2 size = glm::ivec2(last - first) + 1;
+  const std::vector<double> vertices = vertices_in(glm::i64vec2(first), size, stride);
+  // Height in a cell of the square, in cells from `first`.
+  const auto height_m = [&](double x, double z) {
+    const glm::ivec2 cell(std::min(static_cast<int>(x), size.x - 2),
+                          std::min(static_cast<int>(z), size.y - 2));
+    const auto at = static_cast<std::size_t>(cell.y * size.x + cell.x);
+    const auto below = at + static_cast<std::size_t>(size.x);
+    return height_on({vertices[at], vertices[at + 1], vertices[below], vertices[below + 1]},
+                     x - cell.x, z - cell.y);
   };
-  std::uint16_t lowest = UINT16_MAX;
-  const glm::dvec2 last = low + glm::dvec2(count - 1);
-  if (is_inside(stride * low.x, stride * low.y, 0) &&
-      is_inside(stride * last.x, stride * last.y, 0)) {
-    const glm::ivec2 first(low);
-    for (int z = first.y; z < first.y + count.y; ++z) {
-      for (int x = first.x; x < first.x + count.x; ++x)
-        lowest = std::min(lowest, known(static_cast<std::size_t>(stride * z) * vertices_ +
-                                        static_cast<std::size_t>(stride * x)));
-    }
-  } else {
-    const auto columns = places(low.x, count.x, block_.x), rows = places(low.y, count.y, block_.z);
-    std::vector<float> noise(columns.size() * rows.size());
-    shape_.evaluate(columns, rows, noise, columns.size(), shape_.detail());
-    lowest = shape_.quantise(std::ranges::min(noise));
+  // Planes are lowest at vertices, and where the edges of the square cross the sides of triangles.
+  const glm::dvec2 from = low - first, to = high - first;
+  double lowest_m = height_m(to.x, to.y);
+  const auto look = [&](double x, double z) {
+    lowest_m =
+        std::min(lowest_m, height_m(std::clamp(x, from.x, to.x), std::clamp(z, from.y, to.y)));
+  };
+  for (int i = 0; i < size.x * size.y; ++i)
+    look(i % size.x, i / size.x);
+  const auto diagonal = [](double across) { return 1 - (across - std::floor(across)); };
+  for (const double z : {from.y, to.y}) {
+    for (int x = 0; x + 1 < size.x; ++x)
+      look(x + diagonal(z), z);
   }
-  return static_cast<double>(shape_.relief_m) * lowest / 65535.0;
+  for (const double x : {from.x, to.x}) {
+    for (int z = 0; z + 1 < size.y; ++z)
+      look(x, z + diagonal(x));
+  }
+  return lowest_m;
 }
 
 void sample_ground(const Parameters& terrain, core::BlockCoord block,

@@ -42,9 +42,8 @@ class BlockGround {
   // (terrain_strides()): the ground of that level.
   GroundPoint at(glm::dvec2 local_xz, int stride = 1) const;
 
-  // Returns the lowest height of the vertices of all cells that a square touches: no ground in it
-  // is lower. 1 ns for each vertex inside a block with known heights, else as at() and an
-  // evaluation of each vertex.
+  // Returns the lowest height in a square. Some nanoseconds for each vertex below it inside a block
+  // with known heights, else as at() and an evaluation of each vertex.
   double lowest_m(glm::dvec2 middle_m, double half_m, int stride = 1) const;
 
   // Writes the quantised heights of all vertices, row by row (z outer, x inner), as the mesh of
@@ -59,6 +58,8 @@ class BlockGround {
 
   std::vector<std::uint16_t> quantised_vertices() const;
   std::uint16_t known(std::size_t vertex) const;  // its height
+  std::vector<double> vertices_in(glm::i64vec2 first, glm::ivec2 size, int stride) const;
+  double metres(std::uint16_t height) const;
   void world_of(std::int32_t block_index, std::int64_t first, std::span<std::int64_t> out) const;
   bool is_inside(double x, double z, int step) const;
   Corners corners_of(double x, double z, int step) const;

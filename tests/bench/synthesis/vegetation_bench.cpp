@@ -89,5 +89,31 @@ BENCHMARK_CAPTURE(places, silver_combe, "silver_combe")
     ->Iterations(1152);
 BENCHMARK_CAPTURE(places, watershed, "watershed")->Unit(benchmark::kMicrosecond)->Iterations(1152);
 
+// The paper's models with a spacing, a foot and three limits, and without; heights are kept apart.
+void rules(benchmark::State& state, const char* of_scatters) {
+  const models::Registry registry = models::make_standard_registry();
+  std::string text = "format = 1\n[world]\nname = \"rules\"\nseed = 11\nblocks = [0, 0]\n";
+  for (const char* model : {"\"tree\"\ncount = 23\n", "\"rock\"\ncount = 40\n"})
+    text += std::string("[[scatter]]\nmodel = ") + model + of_scatters;
+  const auto world = parse_world(text, "rules.toml", registry);
+  if (!world) return state.SkipWithError(world.error().message.c_str());
+  std::vector<models::BlockGround> grounds;
+  for (std::int32_t x = 0; x < 256; ++x)
+    grounds.emplace_back(world->terrain, core::BlockCoord{x, 7}, 10'000);
+  std::vector<Placement> placements;
+  std::int32_t x = 0;
+  for (auto _ : state) {
+    place_models(*world, registry, {x, 7}, grounds[static_cast<std::size_t>(x)], placements);
+    benchmark::DoNotOptimize(placements.data());
+    x = (x + 1) % 256;
+  }
+}
+BENCHMARK_CAPTURE(rules, none, "")->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(rules, spacing, "spacing_m = 3\n")->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(rules, five,
+                  "spacing_m = 3\nfootprint_m = 2\nmin_height_m = 5\nmax_height_m = 110\n"
+                  "max_slope_deg = 40\n")
+    ->Unit(benchmark::kMicrosecond);
+
 }  // namespace
 }  // namespace psygen::world

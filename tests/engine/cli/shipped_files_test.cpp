@@ -35,6 +35,8 @@ TEST(ShippedFiles, AreFoundByTheirNames) {
 TEST(ShippedFiles, AUsersFileComesFirstAndAFolderIsIgnored) {
   const TemporaryFolder folder;
   std::ofstream(folder / "lakes") << "format = 1\n";
+  EXPECT_TRUE(mentions(run_in(folder, "models --world paper").out,
+                       "scatter[0] tree            23 instances a block, 23.0 stand"));
   const Outcome own = run_in(folder, "models --world lakes");
   EXPECT_EQ(own.code, 1);
   EXPECT_TRUE(mentions(own.err, "lakes:1: world: this field is missing")) << own.err;

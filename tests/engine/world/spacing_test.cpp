@@ -194,10 +194,10 @@ TEST(Spacing, StandsFarAsNear) {
   }
 }
 
-TEST(Footprint, LeavesNoGapBelowTheFoot) {
+TEST(Footprint, StandsOnTheLowestGroundBelowIt) {
   const World world = parsed(wood("footprint_m = 8\nmax_slope_deg = 30", ""));
   const World middle = parsed(wood("max_slope_deg = 30", ""));
-  std::size_t feet = 0, floating = 0, floating_before = 0;
+  std::size_t feet = 0, floating = 0, sunk = 0, floating_before = 0;
   for (int x = 0; x < 12; ++x) {
     const core::BlockCoord block{x, -5};
     const models::BlockGround ground(world.terrain, block, 10'000);
@@ -215,6 +215,7 @@ TEST(Footprint, LeavesNoGapBelowTheFoot) {
         highest = std::max(highest, height_m);
       }
       floating += now[i].position.y - lowest > 1e-4F ? 1 : 0;
+      sunk += lowest - now[i].position.y > 0.2F ? 1 : 0;
       floating_before += before[i].position.y - lowest > 0.2F ? 1 : 0;
       EXPECT_LE(now[i].position.y, highest);
     }
@@ -222,6 +223,7 @@ TEST(Footprint, LeavesNoGapBelowTheFoot) {
   EXPECT_GT(feet, 400U);
   EXPECT_GT(floating_before, feet / 2);
   EXPECT_EQ(floating, 0U);
+  EXPECT_EQ(sunk, 0U);
 }
 
 TEST(Tilt, IsAShareOfTheSlope) {
