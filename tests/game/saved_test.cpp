@@ -12,6 +12,7 @@
 
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/world/edits/edit_bytes.hpp"
+#include "engine/world/files/world_file.hpp"
 #include "game/pilot/pilot.hpp"
 #include "game/play/cairn_type.hpp"
 #include "tests/game/saves_fixture.hpp"
