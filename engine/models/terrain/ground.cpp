@@ -152,7 +152,7 @@ void BlockGround::heights(std::span<std::uint16_t> out) const {
 std::vector<double> BlockGround::vertices_in(glm::i64vec2 first, glm::ivec2 size,
                                              int stride) const {
   std::vector<double> heights;
-  heights.reserve(static_cast<std::size_t>(size.x * size.y));
+  heights.reserve(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
   const auto end = static_cast<std::int64_t>(vertices_);
   const auto is_known = [&](std::int64_t from, int n) {
     return from >= 0 && stride * (from + n - 1) < end;
@@ -167,9 +167,9 @@ std::vector<double> BlockGround::vertices_in(glm::i64vec2 first, glm::ivec2 size
     return heights;
   }
   const auto places = [&](std::int64_t begin, int n, std::int32_t block_index) {
-    std::vector<std::int64_t> out;
-    for (int i = 0; i < n; ++i)
-      out.push_back(shape_.world_of(block_index, stride * (begin + i)));
+    std::vector<std::int64_t> out(static_cast<std::size_t>(n));
+    for (std::int64_t at = begin; std::int64_t & place : out)
+      place = shape_.world_of(block_index, stride * at++);
     return out;
   };
   const auto columns = places(first.x, size.x, block_.x), rows = places(first.y, size.y, block_.z);
@@ -210,8 +210,10 @@ double BlockGround::lowest_m(glm::dvec2 middle_m, double half_m, int stride) con
   const auto height_m = [&](double x, double z) {
     const glm::ivec2 cell(std::min(static_cast<int>(x), size.x - 2),
                           std::min(static_cast<int>(z), size.y - 2));
-    const auto at = static_cast<std::size_t>(cell.y * size.x + cell.x);
-    const auto below = at + static_cast<std::size_t>(size.x);
+    const auto row = static_cast<std::size_t>(size.x);
+    const std::size_t at =
+        static_cast<std::size_t>(cell.y) * row + static_cast<std::size_t>(cell.x);
+    const std::size_t below = at + row;
     return height_on({vertices[at], vertices[at + 1], vertices[below], vertices[below + 1]},
                      x - cell.x, z - cell.y);
   };
@@ -222,8 +224,10 @@ double BlockGround::lowest_m(glm::dvec2 middle_m, double half_m, int stride) con
     lowest_m =
         std::min(lowest_m, height_m(std::clamp(x, from.x, to.x), std::clamp(z, from.y, to.y)));
   };
-  for (int i = 0; i < size.x * size.y; ++i)
-    look(i % size.x, i / size.x);
+  for (int z = 0; z < size.y; ++z) {
+    for (int x = 0; x < size.x; ++x)
+      look(x, z);
+  }
   const auto diagonal = [](double across) { return 1 - (across - std::floor(across)); };
   for (const double z : {from.y, to.y}) {
     for (int x = 0; x + 1 < size.x; ++x)
