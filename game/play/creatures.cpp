@@ -133,8 +133,16 @@ bool Creatures::advance(Creature& c, double dt, const MayBe& may_be) {
   if (!ground || !may_be(*ground)) return false;
   const double y = c.at.local.y;
   c.at = there;
+  c.ground = *ground;
   c.at.local.y = c.kind == Kind::kDeer ? ground->height_m : y;
   return true;
+}
+
+bool Creatures::is_over_ground(Creature& c) {
+  if (!c.ground) {
+    if (const auto ground = query_->ground(c.at)) c.ground = *ground;
+  }
+  return c.ground.has_value();
 }
 
 // A deer grazes around its home, and runs from the player.
@@ -176,9 +184,8 @@ void Creatures::step_bird(Creature& c, const glm::dvec3& to_player, double hour,
   const double height_m = night ? 4 : 11 + 15 * whim(c, time_s, 12) + 10 * c.fear;
   c.pace = kBirdPace * (1 + 0.5 * c.fear);
   c.beat += dt * (13 + 9 * c.fear);
-  const auto ground = query_->ground(c.at);
-  if (!ground) return;
-  const double floor_m = ground->surface_m;
+  if (!is_over_ground(c)) return;
+  const double floor_m = c.ground->surface_m;
   const double climb = std::clamp((floor_m + height_m - c.at.local.y) * 0.8, -3.0, 4.0);
   c.pitch = std::atan2(climb, c.pace);
   c.at.local.y = std::max(c.at.local.y + climb * dt, floor_m + 1.5);
@@ -198,13 +205,10 @@ void Creatures::step_fish(Creature& c, const glm::dvec3& to_player, double dt) {
   c.beat += dt * (4 + 6 * c.pace);
   if (!advance(c, dt, [](const query::Ground& g) { return g.water_depth_m > 0.7; }))
     c.yaw += 4 * dt;
-  const auto ground = query_->ground(c.at);
-  if (!ground) return;
-  const auto water = world::water_surface(query_->world(), c.at);
-  if (!water) return;
-  const double depth_m = 0.35 + 0.6 * whim(c, 0, 1);
-  c.at.local.y = std::max(water->surface_m - depth_m,
-                          std::min(ground->height_m + 0.15, water->surface_m - 0.15));
+  if (!is_over_ground(c)) return;
+  const double surface_m = c.ground->surface_m, depth_m = 0.35 + 0.6 * whim(c, 0, 1);
+  c.at.local.y =
+      std::max(surface_m - depth_m, std::min(c.ground->height_m + 0.15, surface_m - 0.15));
 }
 
 }  // namespace cairns

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "engine/query/world.hpp"
@@ -24,6 +25,7 @@ struct Creature {
   std::uint64_t seed = 0;
   core::WorldPosition home;  // centre of its range
   std::int32_t cell_x = 0, cell_z = 0;
+  std::optional<query::Ground> ground;  // below it, since it moved
 };
 
 class Creatures {
@@ -52,6 +54,9 @@ class Creatures {
   void step_deer(Creature& c, const glm::dvec3& to_player, double dt);
   void step_bird(Creature& c, const glm::dvec3& to_player, double hour, double dt);
   void step_fish(Creature& c, const glm::dvec3& to_player, double dt);
+  // Looks up the ground below the creature if it has not moved yet. Returns false outside the
+  // world.
+  bool is_over_ground(Creature& c);
   // Moves the creature ahead if `may_be` accepts the ground there. Returns true if it moved.
   template <class MayBe>
   bool advance(Creature& c, double dt, const MayBe& may_be);

@@ -64,13 +64,25 @@ class Call {
       sum_all(false);
       find_lakes();
     }
+    carve_all(out);
+  }
+  void ground(CarvedRows out) {
+    HWY_ALIGN float base[kMaxSamples * kRow];
+    this->base({.height_m = base, .stride = kRow});
+    for (std::size_t r = 0; r < samples_.rows; ++r)
+      std::copy_n(base + r * kRow, samples_.columns, out.height_m + r * out.stride);
+    out.base_m = base;
+    out.base_stride = kRow;
+    carve_all(out);
+  }
+
+ private:
+  void carve_all(const CarvedRows& out) {
     for (std::size_t r = 0; r < samples_.rows; ++r) {
       for (std::size_t i = 0; i < samples_.columns; i += lanes())
         carve_vector(r, i, out);
     }
   }
-
- private:
   const Axes& axes() const { return guided_ ? guide_ : samples_; }
 
   // Sums over all spots; then heights are divided by weights.
@@ -308,6 +320,10 @@ void carve_on_target(const Patch& patch, const Samples& samples, const Chosen& c
                      const CarvedRows& rows) {
   Call(patch, samples, chosen).carve(rows);
 }
+void ground_on_target(const Patch& patch, const Samples& samples, const Chosen& chosen,
+                      const CarvedRows& rows) {
+  Call(patch, samples, chosen).ground(rows);
+}
 
 }  // namespace psygen::models::network::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -318,6 +334,7 @@ namespace {
 
 HWY_EXPORT(base_on_target);
 HWY_EXPORT(carve_on_target);
+HWY_EXPORT(ground_on_target);
 
 // The box that spots and curves must reach to change samples in a box.
 Box read_for(const Box& box, bool guided) {
@@ -362,6 +379,9 @@ HeightRange range_of(const Patch& patch, const Box& box, bool guided) {
 }
 void carve_rows(const Patch& patch, const Samples& samples, const CarvedRows& rows) {
   HWY_DYNAMIC_DISPATCH(carve_on_target)(patch, samples, choose(patch, samples), rows);
+}
+void ground_rows(const Patch& patch, const Samples& samples, CarvedRows rows) {
+  HWY_DYNAMIC_DISPATCH(ground_on_target)(patch, samples, choose(patch, samples), rows);
 }
 
 }  // namespace psygen::models::network

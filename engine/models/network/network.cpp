@@ -280,18 +280,10 @@ void RiverNetwork::carve(const Lattice& at, GroundDetail detail, const CarvedRow
 }
 
 void RiverNetwork::evaluate(const Lattice& at, GroundDetail detail, CarvedRows rows) const {
-  std::vector<float> base(network::kMaxSamples * network::kMaxSamples);
   each_part(at, detail,
             [&](const network::Patch& patch, const network::Samples& samples, std::size_t column,
                 std::size_t row) {
-              const std::size_t width = samples.x.size(), by = row * rows.stride + column;
-              network::base_rows(patch, samples, {.height_m = base.data(), .stride = width});
-              for (std::size_t r = 0; r < samples.z.size(); ++r)
-                std::copy_n(base.data() + r * width, width, rows.height_m + by + r * rows.stride);
-              network::CarvedRows part = shifted(rows, by);
-              part.base_m = base.data();
-              part.base_stride = width;
-              network::carve_rows(patch, samples, part);
+              network::ground_rows(patch, samples, shifted(rows, row * rows.stride + column));
             });
 }
 
@@ -312,19 +304,15 @@ RiverNetwork::PatchPlace RiverNetwork::in_patch(const core::WorldPosition& place
 
 NetworkWater RiverNetwork::water_at(const PatchPlace& place) {
   const network::Samples at{{&place.x, 1}, {&place.z, 1}, true};
-  float base = 0, water = 0;
+  float ground = 0, water = 0;
   NetworkWater result;
-  network::base_rows(*place.patch, at, {.height_m = &base, .stride = 1});
-  float ground = base;
-  network::carve_rows(*place.patch, at,
-                      {.base_m = &base,
-                       .base_stride = 1,
-                       .height_m = &ground,
-                       .water_m = &water,
-                       .flow_x = &result.flow_m_s.x,
-                       .flow_z = &result.flow_m_s.y,
-                       .body = &result.body,
-                       .stride = 1});
+  network::ground_rows(*place.patch, at,
+                       {.height_m = &ground,
+                        .water_m = &water,
+                        .flow_x = &result.flow_m_s.x,
+                        .flow_z = &result.flow_m_s.y,
+                        .body = &result.body,
+                        .stride = 1});
   if (water <= ground) return {};
   result.surface_m = water;
   result.depth_m = water - ground;

@@ -57,9 +57,9 @@ class Spots {
     if (in_lake(n)) {
       s.depth_m = static_cast<float>(n.depth / kHeightUnits);
       s.lake = index_of(n);
-      patch_.lake_spots.push_back(static_cast<std::uint32_t>(patch_.spots.size()));
     }
     patch_.spots.push_back(s);
+    if (s.lake >= 0) patch_.lake_spots.push_back(s);
   }
 
   const Scale& scale_;
@@ -85,11 +85,14 @@ void Patch::fill_bins() {
   lakes.shrink_to_fit();
   spot_bins = bins_of(spots);
   curve_bins = bins_of(curves);
+  lake_bins = bins_of(lake_spots);
 }
 
 bool Patch::may_have_lake(const Box& box) const {
   const Box read = box.grown(kGuideReach);
-  return std::ranges::any_of(lake_spots, [&](std::uint32_t k) { return reaches(spots[k], read); });
+  bool any = false;
+  lake_bins.find(read, [&](std::size_t k) { any = any || reaches(lake_spots[k], read); });
+  return any;
 }
 
 bool Patch::is_lake_level(double surface_m, double tolerance_m) const {
@@ -118,8 +121,8 @@ bool Patch::may_have_water(const Box& box) const {
 
 std::size_t Patch::bytes() const {
   return sizeof(Patch) + spots.capacity() * sizeof(Spot) + curves.capacity() * sizeof(Curve) +
-         lake_spots.capacity() * sizeof(std::uint32_t) + lakes.capacity() * sizeof(Lake) +
-         spot_bins.bytes() + curve_bins.bytes();
+         lake_spots.capacity() * sizeof(Spot) + lakes.capacity() * sizeof(Lake) +
+         spot_bins.bytes() + curve_bins.bytes() + lake_bins.bytes();
 }
 
 float height_m(const Scale& scale, std::int32_t height) {

@@ -100,12 +100,12 @@ struct Patch {
   std::int64_t x = 0, z = 0;
   float unit_m = 0;
   float sea_level_m = 0;
-  float shore_m = 0;                      // the ground rises by this over one share of lake
-  std::vector<Spot> spots;                // rows of the lattice, then columns
-  std::vector<std::uint32_t> lake_spots;  // indices of those that have a lake, ascending
-  std::vector<Curve> curves;              // in the order of their nodes, then of directions
-  std::vector<Lake> lakes;                // ascending by level, then body
-  ReachBins spot_bins, curve_bins;
+  float shore_m = 0;             // the ground rises by this over one share of lake
+  std::vector<Spot> spots;       // rows of the lattice, then columns
+  std::vector<Spot> lake_spots;  // copies of those that have a lake
+  std::vector<Curve> curves;     // in the order of their nodes, then of directions
+  std::vector<Lake> lakes;       // ascending by level, then body
+  ReachBins spot_bins, curve_bins, lake_bins;
 
   // Call visit(spot) or visit(curve) for all that reach a box, in the order of their lists. Every
   // patch that covers the box has the same ones, in the same order.
