@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "engine/core/rounding.hpp"
 #include "engine/render/renderer.hpp"
@@ -112,6 +113,7 @@ std::uint64_t Scene::settle(const core::CameraPose& pose, const Progress& progre
   State& s = *state_;
   std::uint64_t synthesised = 0;
   int quiet = 0, idle = 0, refused = 0;
+  float least = std::numeric_limits<float>::infinity();  // coarsening of earlier tries
   double fraction = 0;
   const auto go_on = [&] { return !progress || progress("filling the cache", fraction); };
   s.pressure = {};
@@ -135,6 +137,11 @@ std::uint64_t Scene::settle(const core::CameraPose& pose, const Progress& progre
     const double done = static_cast<double>(synthesised);
     fraction = done / (done + missing + 1.0);
     if (!go_on()) break;
+    // Memory may have been short only until the meshes of another place were evicted.
+    if (quiet == kQuietTicks && s.quality.coarsening > 1 && s.quality.coarsening < least) {
+      quiet = 0;
+      least = std::exchange(s.quality.coarsening, 1.0F);
+    }
   }
   if (s.output.renderer != nullptr) prepare_effects(s.entities, *s.output.renderer);
   return synthesised;

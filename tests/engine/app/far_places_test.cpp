@@ -35,7 +35,7 @@ TEST(FarPlaces, SettlingAfterALeapWithAFullCacheEqualsAFreshStart) {
   options.validation = false;
   options.scene.view_distance_m = 3000;
   options.scene.max_error_pixels = 3;
-  options.scene.budget_bytes = 19ull << 20;  // room for one place, not for two
+  options.scene.budget_bytes = 24ull << 20;  // room for one place, not for two
   Studio studio("silver_combe.toml", options);
   for (const core::BlockCoord block : {core::BlockCoord{300, 300}, {100, 400}, {200, 100}}) {
     Studio fresh("silver_combe.toml", options);
