@@ -92,7 +92,9 @@ constexpr double kMinHeight = 0.25;  // of the camera above ground, in heights o
 core::Result<std::string> alone(core::Result<std::string> text) {
   for (const char* limit :
        {"min_height_m", "max_height_m", "max_slope_deg", "on_ground", "mask_image", "mask_area_m",
-        "mask_noise_m", "max_depth_m", "near_water_m", "spacing_m"})
+        "mask_noise_m", "max_depth_m", "near_water_m", "spacing_m", "min_slope_deg",
+        "facing_spread_deg", "max_above_water_m", "far_from_water_m", "near_road_m",
+        "far_from_road_m", "beside", "beside_m", "edge_size"})
     if (text) text = world::without_value(*text, {"scatter", 0, limit});
   if (text) text = world::with_value(*text, {"scatter", 0, "count"}, "1");
   return text;

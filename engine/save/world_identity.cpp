@@ -72,6 +72,7 @@ void add_limits(Facts& facts, const world::Scatter& scatter) {
   facts.add("max_slope_deg", scatter.max_slope_deg, usual.max_slope_deg);
   facts.add("max_depth_m", scatter.max_depth_m, usual.max_depth_m);
   facts.add("near_water_m", scatter.near_water_m, usual.near_water_m);
+  if (const std::uint64_t site = world::site_hash(scatter.site); site != 0) facts.add("site", site);
   // A spacing changes which instances stand. Only the first one moves them.
   if (scatter.keeps_apart()) facts.add("keeps_apart");
   if (const std::uint64_t mask = world::mask_hash(scatter.mask); mask != 0) facts.add("mask", mask);
@@ -188,7 +189,8 @@ std::vector<WorldPart> parts_of(const world::World& world, const models::Registr
     const auto add = [&](Facts& f) {
       add_limits(f, scatter);
       if (scatter.mask.ground != 0) f.add("ground", world::placing_hash(world));
-      if (scatter.limits_depth() || scatter.needs_water()) f.add("water", world.water.level_m);
+      if (scatter.limits_depth() || scatter.water_reach_m() > 0)
+        f.add("water", world.water.level_m);
     };
     part(kScatter, add, name, scatter.count);
   }

@@ -38,8 +38,8 @@ HeightPicture heights_of(const GreyPicture& picture) {
 bool operator==(const ScatterMask& a, const ScatterMask& b) {
   const auto content = [](const ScatterMask& m) { return m.picture ? m.picture->hash : 0; };
   return a.image == b.image && content(a) == content(b) && a.area_m == b.area_m &&
-         a.noise_m == b.noise_m && a.share == b.share && a.patches == b.patches &&
-         a.ground == b.ground;
+         a.noise_m == b.noise_m && a.share == b.share && a.fade == b.fade &&
+         a.patches == b.patches && a.ground == b.ground;
 }
 
 std::uint64_t patch_seed(const ScatterMask& mask, std::uint64_t world_seed) {
@@ -47,12 +47,19 @@ std::uint64_t patch_seed(const ScatterMask& mask, std::uint64_t world_seed) {
 }
 
 double mask_share(const ScatterMask& mask, std::uint64_t seed, glm::dvec2 place_m) {
+  double share = 1;
   if (mask.noise_m > 0) {
-    if (!(models::patch_noise(patch_seed(mask, seed), place_m, mask.noise_m) <
-          models::patch_noise_below(mask.share)))
-      return 0;
+    const double noise = models::patch_noise(patch_seed(mask, seed), place_m, mask.noise_m);
+    // Fades over as much ground inside the sharp border as outside of it.
+    const double width = mask.fade * std::min(mask.share, 1 - mask.share);
+    const double full = models::patch_noise_below(mask.share - width);
+    constexpr double kNearlyAll = 0.9999;  // the noise has no value at which all of it is below
+    const double none =
+        models::patch_noise_below(std::min(mask.share + width, std::max(mask.share, kNearlyAll)));
+    if (noise >= none) return 0;
+    if (noise > full) share = (none - noise) / (none - full);
   }
-  return mask.picture ? mask.picture->over(mask.area_m, place_m) : 1;
+  return mask.picture ? share * mask.picture->over(mask.area_m, place_m) : share;
 }
 
 std::uint64_t mask_hash(const ScatterMask& mask) {
@@ -64,6 +71,7 @@ std::uint64_t mask_hash(const ScatterMask& mask) {
   if (mask.noise_m > 0) {
     add(mask.noise_m);
     add(mask.share);
+    if (mask.fade > 0) add(mask.fade);
     hash = core::combine(hash, static_cast<std::uint64_t>(mask.patches));
   }
   if (mask.picture) {

@@ -47,6 +47,7 @@ struct ScatterMask {
   std::array<double, 4> area_m{};
   double noise_m = 0;        // size of the patches; 0: no patches
   double share = 0.5;        // fraction of the ground that the patches cover
+  double fade = 0;           // of the borders of patches: 0 sharp … 1 fading over all of them
   std::int64_t patches = 0;  // seed: equal seed, size and share give equal patches
   std::uint32_t ground = 0;  // allowed kinds, bits 1 << GroundKind; 0: all
 

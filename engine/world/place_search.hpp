@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -40,8 +41,9 @@ class BlockObstacles {
   BlockObstacles(const World& world, core::BlockCoord block);
   ~BlockObstacles();
   core::BlockCoord block() const { return block_; }
-  // The roads that may cross the block.
-  std::span<const models::GroundEdit* const> roads();
+  double block_m() const;
+  // The roads that may come within so many metres of the block.
+  std::span<const models::GroundEdit* const> roads(double margin_m);
   // True if there may be rivers or lakes within so many metres.
   bool may_have_water(double margin_m);
   // The instances that keep apart.
@@ -50,8 +52,9 @@ class BlockObstacles {
  private:
   const World& world_;
   core::BlockCoord block_;
-  std::optional<std::vector<const models::GroundEdit*>> roads_;
-  std::vector<std::pair<double, bool>> water_;  // answers by margin
+  // Answers by margin. A map keeps its answers in place.
+  std::map<double, std::vector<const models::GroundEdit*>> roads_;
+  std::vector<std::pair<double, bool>> water_;
   std::unique_ptr<Spacing> others_;
 };
 
@@ -67,6 +70,8 @@ class PlaceSearch {
   // All arguments must outlive it.
   PlaceSearch(const World& world, const Scatter& scatter, BlockObstacles& block);
 
+  // The fraction of instances that the mask keeps at a position of the block, 0 … 1.
+  double mask_share(glm::dvec2 local_m) const;
   // The first allowed position that instance `index` of the block tries. Nothing if no position is
   // allowed, or if a mask, a road or water excludes the one found. `ground` is the ground of the
   // block, or of a larger node in which the block's corner is at `corner_m`.
@@ -77,9 +82,17 @@ class PlaceSearch {
   // True if rivers or lakes may be where instances look for water.
   bool has_rivers() const;
   bool may_stand(const models::GroundPoint& ground, glm::dvec2 local_m) const;
-  bool is_near_water(const models::BlockGround& ground, glm::dvec2 corner_m,
-                     glm::dvec2 local_m) const;
-  std::optional<WaterSurface> water_over(glm::dvec2 local_m) const;
+  bool faces(const glm::vec3& normal) const;
+  bool has_its_road(glm::dvec2 local_m) const;
+  // True if there is water within `reach_m`, at most `below_m` below the position.
+  bool is_near_water(const models::BlockGround& ground, glm::dvec2 corner_m, glm::dvec2 local_m,
+                     double reach_m, double below_m) const;
+  bool has_its_neighbours(const models::BlockGround& ground, glm::dvec2 corner_m,
+                          glm::dvec2 local_m) const;
+  // True if inland water may be within reach of the position.
+  bool may_be_near_inland(glm::dvec2 local_m, double reach_m) const;
+  // The surface of the water of the world's function; of the sea only if nothing else is there.
+  std::optional<WaterSurface> water_over(glm::dvec2 local_m, bool is_inland) const;
   bool is_left_out(std::uint32_t index, glm::dvec2 local_m, double ground_m) const;
 
   const World& world_;
@@ -89,7 +102,8 @@ class PlaceSearch {
   int tries_;
   BlockObstacles& obstacles_;
   core::BlockCoord block_;
-  float min_up_;
+  float min_up_, max_up_, min_facing_;  // of the unit normal; cosine between slope and `facing_`
+  glm::vec2 facing_;
   std::optional<Palette> palette_;  // set if the mask selects kinds of ground
 };
 

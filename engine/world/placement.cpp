@@ -143,8 +143,16 @@ models::Parameters Scattering::parameters(std::uint32_t index, const glm::vec3& 
                             core::Purpose::kParameters);
   core::RandomStream seeds(seed_, obstacles_.block().x, obstacles_.block().z, index,
                            core::Purpose::kSeed);
+  double size = 1;
+  if (scatter_.site.edge_size < 1) {
+    core::RandomStream places(seed_, obstacles_.block().x, obstacles_.block().z, index,
+                              core::Purpose::kPosition);
+    size = std::lerp(scatter_.site.edge_size, 1.0,
+                     search_.mask_share(draw_place(places, obstacles_.block_m())));
+  }
   for (std::size_t i = 0; i < specs_.size(); ++i) {
-    const ParameterRange& range = scatter_.ranges[i];
+    ParameterRange range = scatter_.ranges[i];
+    if (specs_[i].unit == "m") range.high = range.low + size * (range.high - range.low);
     if (specs_[i].source == models::ParameterSource::kPlaced) {
       if (specs_[i].name == "seed") p.set_integer(i, std::bit_cast<std::int64_t>(seeds.next_u64()));
     } else if (specs_[i].type == models::ParameterType::kInteger) {
@@ -213,14 +221,16 @@ double ground_margin(const World& world, int node_level) {
 }
 
 double ground_reach_m(const World& world) {
-  double farthest_m = 0, widest_m = 0;
+  double farthest_m = 0, widest_m = 0, beside_m = 0;
   for (const Scatter& scatter : world.scatter) {
-    if (scatter.needs_water()) farthest_m = std::max(farthest_m, scatter.near_water_m);
-    farthest_m = std::max(farthest_m, scatter.footprint_m / 2);
+    farthest_m = std::max({farthest_m, scatter.water_reach_m(), scatter.footprint_m / 2});
     widest_m = std::max(widest_m, scatter.spacing_m);
   }
+  // One beside another, which stands beside a third, and so on.
+  for (const Scatter& scatter : world.scatter)
+    if (scatter.is_beside()) beside_m += scatter.site.beside_m + widest_m;
   const double block_m = world.block_size_m();
-  return farthest_m + std::ceil(widest_m / block_m) * block_m;
+  return farthest_m + std::ceil((widest_m + beside_m) / block_m) * block_m;
 }
 
 std::size_t models_per_block(const World& world) {

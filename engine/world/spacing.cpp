@@ -3,9 +3,23 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/vector_relational.hpp>
+#include <numbers>
 #include <tuple>
 
+#include "engine/core/rounding.hpp"
+
 namespace psygen::world {
+
+double kept_share(double per_m2, double spacing_m) {
+  const core::RoundToNearest rounding;
+  const double within = per_m2 * std::numbers::pi * spacing_m * spacing_m;
+  if (within <= 0) return 1;
+  // e^λ as a power of 2^20, with the same bits on every machine.
+  double power = 1 + within * 0x1p-20;
+  for (int i = 0; i < 20; ++i)
+    power *= power;
+  return (1 - 1 / power) / within;
+}
 
 Spacing::Spacing(const World& world, core::BlockCoord block)
     : world_(world), block_(block), size_m_(world.block_size_m()) {
@@ -13,7 +27,8 @@ Spacing::Spacing(const World& world, core::BlockCoord block)
   for (const Scatter& scatter : world.scatter) {
     firsts_.push_back(first);
     first += scatter.count;
-    widest_m_ = std::max(widest_m_, scatter.spacing_m);
+    widest_spacing_m_ = std::max(widest_spacing_m_, scatter.spacing_m);
+    reach_m_ = std::max({reach_m_, scatter.spacing_m, scatter.site.beside_m});
   }
 }
 
@@ -21,7 +36,7 @@ Spacing::Candidate Spacing::draw(core::BlockCoord block, std::uint32_t scatter,
                                  std::uint32_t index) const {
   core::RandomStream random(world_.seed, block.x, block.z, index, core::Purpose::kPosition);
   const glm::dvec2 at_m = draw_place(random, size_m_);
-  return {at_m, random.next_u64(), index, scatter, {}};
+  return {at_m, random.next_u64(), index, scatter, {}, {}};
 }
 
 Spacing::Beside& Spacing::beside(glm::ivec2 offset) {
@@ -33,8 +48,8 @@ Spacing::Beside& Spacing::beside(glm::ivec2 offset) {
   Beside& made = *beside_.back();
   if (!world_.contains(block)) return made;
   // Skips candidates beyond the reach of our block.
-  const glm::dvec2 low = -glm::dvec2(offset) * size_m_ - widest_m_;
-  const glm::dvec2 high = low + size_m_ + 2 * widest_m_;
+  const glm::dvec2 low = -glm::dvec2(offset) * size_m_ - reach_m_;
+  const glm::dvec2 high = low + size_m_ + 2 * reach_m_;
   for (std::uint32_t s = 0; s < world_.scatter.size(); ++s) {
     if (!world_.scatter[s].keeps_apart()) continue;
     for (std::uint32_t k = 0; k < world_.scatter[s].count; ++k) {
@@ -56,22 +71,40 @@ bool Spacing::comes_first(const Candidate& a, glm::ivec2 a_block, const Candidat
   return rank(a, core::moved(block_, a_block.x, a_block.y)) < rank(b, block_);
 }
 
-bool Spacing::is_allowed(Beside& block, Candidate& candidate, const models::BlockGround& ground,
-                         glm::dvec2 corner_m) const {
-  if (candidate.is_allowed) return *candidate.is_allowed;
-  const PlaceSearch search(world_, world_.scatter[candidate.scatter], block.obstacles);
-  const bool is_own = block.offset == glm::ivec2(0, 0);
-  std::optional<Foothold> found;
-  if (is_own || ground.node_level() > 0) {
-    found = search.find(ground, candidate.index, corner_m + glm::dvec2(block.offset) * size_m_);
-  } else {
-    if (!block.ground)
-      block.ground.emplace(unedited_terrain(world_), block.obstacles.block(),
-                           world_.has_costly_heights() ? block.candidates.size() : 1);
-    found = search.find(*block.ground, candidate.index);
+Spacing::Below Spacing::below(Beside& block, const models::BlockGround& ground,
+                              glm::dvec2 corner_m) const {
+  if (block.offset == glm::ivec2(0, 0) || ground.node_level() > 0)
+    return {ground, corner_m + glm::dvec2(block.offset) * size_m_};
+  if (!block.ground)
+    block.ground.emplace(unedited_terrain(world_), block.obstacles.block(),
+                         world_.has_costly_heights() ? block.candidates.size() : 1);
+  return {*block.ground, {0, 0}};
+}
+
+bool Spacing::is_allowed(Beside& block, Candidate& candidate, const Below& below) const {
+  if (!candidate.is_allowed) {
+    const PlaceSearch search(world_, world_.scatter[candidate.scatter], block.obstacles);
+    candidate.is_allowed = search.find(below.ground, candidate.index, below.corner_m).has_value();
   }
-  candidate.is_allowed = found.has_value();
   return *candidate.is_allowed;
+}
+
+template <class IsWanted>
+bool Spacing::any_within(glm::dvec2 place_m, double reach_m, const IsWanted& is_wanted) {
+  const auto block_at = [this](double m) { return static_cast<int>(std::floor(m / size_m_)); };
+  for (int z = block_at(place_m.y - reach_m); z <= block_at(place_m.y + reach_m); ++z) {
+    for (int x = block_at(place_m.x - reach_m); x <= block_at(place_m.x + reach_m); ++x) {
+      Beside& block = beside({x, z});
+      const glm::dvec2 place = place_m - glm::dvec2(x, z) * size_m_;
+      auto next = std::ranges::lower_bound(block.candidates, place.x - reach_m, {},
+                                           [](const Candidate& c) { return c.at_m.x; });
+      for (; next != block.candidates.end() && next->at_m.x < place.x + reach_m; ++next) {
+        const glm::dvec2 away = next->at_m - place;
+        if (is_wanted(block, *next, away.x * away.x + away.y * away.y)) return true;
+      }
+    }
+  }
+  return false;
 }
 
 bool Spacing::is_crowded(std::uint32_t index, const models::BlockGround& ground,
@@ -80,24 +113,28 @@ bool Spacing::is_crowded(std::uint32_t index, const models::BlockGround& ground,
       static_cast<std::uint32_t>(std::ranges::upper_bound(firsts_, index) - firsts_.begin() - 1);
   const Candidate own = draw(block_, scatter, index);
   const double spacing_m = world_.scatter[scatter].spacing_m;
-  const double reach_m = (spacing_m + widest_m_) / 2;
-  const auto block_at = [this](double m) { return static_cast<int>(std::floor(m / size_m_)); };
-  for (int z = block_at(own.at_m.y - reach_m); z <= block_at(own.at_m.y + reach_m); ++z) {
-    for (int x = block_at(own.at_m.x - reach_m); x <= block_at(own.at_m.x + reach_m); ++x) {
-      Beside& block = beside({x, z});
-      const glm::dvec2 corner = glm::dvec2(x, z) * size_m_, place = own.at_m - corner;
-      auto next = std::ranges::lower_bound(block.candidates, place.x - reach_m, {},
-                                           [](const Candidate& c) { return c.at_m.x; });
-      for (; next != block.candidates.end() && next->at_m.x < place.x + reach_m; ++next) {
-        const glm::dvec2 away = next->at_m - place;
-        const double apart_m = (spacing_m + world_.scatter[next->scatter].spacing_m) / 2;
-        if (away.x * away.x + away.y * away.y >= apart_m * apart_m) continue;
-        if (!comes_first(*next, {x, z}, own)) continue;
-        if (is_allowed(block, *next, ground, corner_m)) return true;
-      }
+  const auto is_in_the_way = [&](Beside& block, Candidate& other, double away2) {
+    const double apart_m = (spacing_m + world_.scatter[other.scatter].spacing_m) / 2;
+    return away2 < apart_m * apart_m && comes_first(other, block.offset, own) &&
+           is_allowed(block, other, below(block, ground, corner_m));
+  };
+  return any_within(own.at_m, (spacing_m + widest_spacing_m_) / 2, is_in_the_way);
+}
+
+bool Spacing::any_stands(const SiteRules& site, const models::BlockGround& ground,
+                         glm::dvec2 corner_m, glm::dvec2 place_m) {
+  const auto stands = [&](Beside& block, Candidate& other, double away2) {
+    if ((site.beside >> other.scatter & 1U) == 0 || away2 >= site.beside_m * site.beside_m)
+      return false;
+    if (!other.stands) {
+      const Below here = below(block, ground, corner_m);
+      Spacing& around = block.offset == glm::ivec2(0, 0) ? *this : block.obstacles.others();
+      other.stands = is_allowed(block, other, here) &&
+                     !around.is_crowded(other.index, here.ground, here.corner_m);
     }
-  }
-  return false;
+    return *other.stands;
+  };
+  return any_within(place_m, site.beside_m, stands);
 }
 
 }  // namespace psygen::world

@@ -1,8 +1,10 @@
 #include "engine/world/world.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
+#include "engine/core/hash.hpp"
 #include "engine/models/edits.hpp"
 #include "engine/models/terrain/ground.hpp"
 #include "engine/models/terrain/terrain.hpp"
@@ -38,6 +40,18 @@ core::BlockCoord beside(const World& world, core::BlockCoord block) {
 }
 
 }  // namespace
+
+std::uint64_t site_hash(const SiteRules& site) {
+  SiteRules places = site;
+  places.edge_size = 1;
+  if (places == SiteRules{}) return 0;
+  std::uint64_t hash = core::mix64(site.beside + 1);
+  for (const double rule :
+       {site.min_slope_deg, site.facing_deg, site.facing_spread_deg, site.far_from_water_m,
+        site.max_above_water_m, site.far_from_road_m, site.near_road_m, site.beside_m})
+    hash = core::combine(hash, std::bit_cast<std::uint64_t>(rule + 0.0));
+  return std::max<std::uint64_t>(hash, 1);
+}
 
 double World::block_size_m() const {
   return models::terrain_block_size_m(terrain);

@@ -51,6 +51,34 @@ struct HandmadeModel {
   friend bool operator==(const HandmadeModel&, const HandmadeModel&) = default;
 };
 
+// Further rules for the places of the instances of a scatter (place_search.hpp).
+struct SiteRules {
+  double min_slope_deg = 0;  // of the ground, from the horizontal
+  // Direction that the ground falls in, from north towards east, and the largest deviation from it.
+  // Ground flatter than kFlatDeg faces all directions.
+  double facing_deg = 0, facing_spread_deg = 180;
+  static constexpr double kFlatDeg = 3;
+  double far_from_water_m = 0;  // in the plane; 0: any distance
+  // Height of the ground above the water that Scatter::near_water_m asks for.
+  double max_above_water_m = std::numeric_limits<double>::infinity();
+  // Distances from the edges of roads; 0 and infinity: any.
+  double far_from_road_m = 0, near_road_m = std::numeric_limits<double>::infinity();
+  // Distance to a standing instance of one of the scatters `beside`, bits 1 << their index; 0: no
+  // rule. They come earlier in the world, and keep apart by at least as much.
+  double beside_m = 0;
+  std::uint64_t beside = 0;
+  // Scale of the upper ends of all ranges in metres at the border of the mask; 1: no scale.
+  double edge_size = 1;
+
+  bool limits_facing() const { return facing_spread_deg < 180; }
+  bool asks_for_roads() const {
+    return far_from_road_m > 0 || near_road_m < std::numeric_limits<double>::infinity();
+  }
+  friend bool operator==(const SiteRules&, const SiteRules&) = default;
+};
+// A hash of the rules that decide where instances stand; 0 without such rules.
+std::uint64_t site_hash(const SiteRules& site);
+
 // A model type that is scattered over every block.
 struct Scatter {
   models::ModelIndex model = 0;
@@ -67,6 +95,7 @@ struct Scatter {
   double max_depth_m = std::numeric_limits<double>::infinity();
   double near_water_m = std::numeric_limits<double>::infinity();
   ScatterMask mask;  // further restriction within these limits
+  SiteRules site;
   // Diameter of the disc around each instance that overlaps no disc of another instance with a
   // spacing (spacing.hpp); 0: none. `count` is then the number of candidates.
   double spacing_m = 0;
@@ -76,13 +105,18 @@ struct Scatter {
   double tilt = 1;  // share of the ground's slope, for types with a slope
   bool keeps_apart() const { return spacing_m > 0; }
   bool limits_depth() const { return max_depth_m < std::numeric_limits<double>::infinity(); }
+  bool is_beside() const { return site.beside_m > 0; }
+  // Distance in which water decides about a place.
+  double water_reach_m() const {
+    return std::max(needs_water() ? near_water_m : 0, site.far_from_water_m);
+  }
   bool needs_water() const { return near_water_m < std::numeric_limits<double>::infinity(); }
   // True if any limit or mask excludes ground.
   bool has_filter() const {
     return mask.thins() || mask.ground != 0 ||
            min_height_m > -std::numeric_limits<double>::infinity() ||
            max_height_m < std::numeric_limits<double>::infinity() || max_slope_deg < 90 ||
-           limits_depth() || needs_water();
+           limits_depth() || needs_water() || site_hash(site) != 0;
   }
   friend bool operator==(const Scatter&, const Scatter&) = default;
 };

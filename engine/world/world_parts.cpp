@@ -33,7 +33,9 @@ std::uint64_t hash_of_places(const models::ModelType& type, const Scatter& scatt
   hash = core::combine(core::combine(hash, first), scatter.count);
   for (const double limit : {scatter.min_height_m, scatter.max_height_m, scatter.max_slope_deg})
     hash = with_real(hash, limit);
-  if (scatter.limits_depth() || scatter.needs_water())
+  if (const std::uint64_t site = site_hash(scatter.site); site != 0)
+    hash = core::combine(hash, site);
+  if (scatter.limits_depth() || scatter.water_reach_m() > 0)
     for (const double limit : {scatter.max_depth_m, scatter.near_water_m, level_m})
       hash = with_real(hash, limit);
   for (const double rule : {scatter.spacing_m, scatter.footprint_m})
@@ -50,6 +52,8 @@ std::uint64_t hash_of_models(const World& world, const models::Registry& registr
     hash = core::combine(hash, part);
   for (const ParameterRange& range : scatter.ranges)
     hash = with_real(with_real(hash, range.low), range.high);
+  if (scatter.site.edge_size < 1)
+    hash = core::combine(with_real(hash, scatter.site.edge_size), mask_hash(scatter.mask));
   return scatter.tilt < 1 ? with_real(hash, scatter.tilt) : hash;
 }
 
@@ -65,12 +69,13 @@ WorldParts parts_of(const World& world, const models::Registry& registry) {
     parts.models.push_back(hash_of_models(world, registry, scatter, first));
     first += scatter.count;
   }
-  // Instances that keep apart depend on all others that do.
+  // Instances that keep apart, or stand beside such ones, depend on all that do.
   std::uint64_t apart = 0;
   for (std::size_t s = 0; s < world.scatter.size(); ++s)
     if (world.scatter[s].keeps_apart()) apart = core::combine(apart, parts.places[s]);
   for (std::size_t s = 0; s < world.scatter.size(); ++s)
-    if (world.scatter[s].keeps_apart()) parts.places[s] = core::combine(parts.places[s], apart);
+    if (world.scatter[s].keeps_apart() || world.scatter[s].is_beside())
+      parts.places[s] = core::combine(parts.places[s], apart);
   return parts;
 }
 

@@ -357,6 +357,14 @@ class Application {
   std::vector<Act> ordered_;
 };
 
+// The squared distance from the centre line of a piece of a road.
+double away2(const RoadPiece& road, glm::dvec2 place_m) {
+  double nearest2 = std::numeric_limits<double>::infinity();
+  for (std::size_t i = road.first; i < road.end; ++i)
+    nearest2 = std::min(nearest2, foot_of(road.segments[i], place_m).away2);
+  return nearest2;
+}
+
 }  // namespace
 
 RoadEffect effect_of(const RoadPiece& road, glm::dvec2 place_m) {
@@ -382,9 +390,7 @@ RoadEffect effect_of(const RoadPiece& road, glm::dvec2 place_m) {
 double road_share(const RoadPiece& road, glm::dvec2 place_m) {
   constexpr double kEdgeM = 1;
   const double outside_m = road.half_width_m + kEdgeM / 2;
-  double nearest2 = outside_m * outside_m;
-  for (std::size_t i = road.first; i < road.end; ++i)
-    nearest2 = std::min(nearest2, foot_of(road.segments[i], place_m).away2);
+  const double nearest2 = std::min(outside_m * outside_m, away2(road, place_m));
   return std::clamp((outside_m - std::sqrt(nearest2)) / kEdgeM, 0.0, 1.0);
 }
 
@@ -401,10 +407,13 @@ bool keeps_clear(const RoadPiece& road, core::BlockCoord block, glm::dvec2 local
                  double block_m) {
   const glm::dvec2 place_m = from_origin_m(road.origin, block, local_m, block_m);
   const double clear_m = road.half_width_m + road.clear_m;
-  for (std::size_t i = road.first; i < road.end; ++i) {
-    if (foot_of(road.segments[i], place_m).away2 <= clear_m * clear_m) return true;
-  }
-  return false;
+  return away2(road, place_m) <= clear_m * clear_m;
+}
+
+double beside_road_m(const RoadPiece& road, core::BlockCoord block, glm::dvec2 local_m,
+                     double block_m) {
+  const glm::dvec2 place_m = from_origin_m(road.origin, block, local_m, block_m);
+  return std::max(std::sqrt(away2(road, place_m)) - road.half_width_m, 0.0);
 }
 
 void GroundEdits::apply(const GroundScale& scale, std::span<const std::int64_t> x,

@@ -338,9 +338,10 @@ bool GroundEdits::reaches(const QuadCoord& node, double block_m) const {
   return any;
 }
 
-std::vector<const GroundEdit*> GroundEdits::roads_in(const QuadCoord& node, double block_m) const {
+std::vector<const GroundEdit*> GroundEdits::roads_in(const QuadCoord& node, double block_m,
+                                                     double margin) const {
   const auto lacks_roads = [](const Cell& cell, const Area&) { return !cell.summary.has_roads; };
-  return pieces_in(cells_.root(), area_of(node), block_m, lacks_roads,
+  return pieces_in(cells_.root(), area_of(node, margin), block_m, lacks_roads,
                    [](const GroundEdit& edit) { return edit.road != nullptr; });
 }
 

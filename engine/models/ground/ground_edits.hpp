@@ -198,7 +198,8 @@ class GroundEdits {
   bool reaches(const QuadCoord& node, double block_m) const;
   // Returns the pieces of roads that may reach a node, each once. O(log n + p log p) for p pieces,
   // independent of all other edits.
-  std::vector<const GroundEdit*> roads_in(const QuadCoord& node, double block_m) const;
+  std::vector<const GroundEdit*> roads_in(const QuadCoord& node, double block_m,
+                                          double margin = 0) const;
   // True if there is any river or lake. O(1).
   bool has_water() const { return !empty() && cells_.root()->summary.has_water; }
   // The same for pieces of rivers and lakes that may reach a node, or `margin` blocks beyond it.
@@ -235,5 +236,8 @@ glm::dvec2 from_origin_m(const core::WorldPosition& origin, core::BlockCoord blo
                          glm::dvec2 local_m, double block_m);
 // True if a piece of a road keeps models away from a point in a block.
 bool keeps_clear(const RoadPiece& road, core::BlockCoord block, glm::dvec2 local_m, double block_m);
+// The distance from the strip of a piece of a road to a point in a block; 0 on the road.
+double beside_road_m(const RoadPiece& road, core::BlockCoord block, glm::dvec2 local_m,
+                     double block_m);
 
 }  // namespace psygen::models

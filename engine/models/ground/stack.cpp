@@ -25,9 +25,10 @@ bool GroundStack::reaches(const QuadCoord& node, double block_m) const {
   return has_fixed_part() || edits.reaches(node, block_m) || shapes.reaches(node, block_m);
 }
 
-std::vector<const GroundEdit*> GroundStack::roads_in(const QuadCoord& node, double block_m) const {
-  std::vector<const GroundEdit*> roads = shapes.roads_in(node, block_m);
-  const std::vector<const GroundEdit*> own = edits.roads_in(node, block_m);
+std::vector<const GroundEdit*> GroundStack::roads_in(const QuadCoord& node, double block_m,
+                                                     double margin) const {
+  std::vector<const GroundEdit*> roads = shapes.roads_in(node, block_m, margin);
+  const std::vector<const GroundEdit*> own = edits.roads_in(node, block_m, margin);
   roads.insert(roads.end(), own.begin(), own.end());
   return roads;
 }
@@ -70,6 +71,17 @@ bool GroundStack::may_have_water(core::BlockCoord block, double margin_m, double
   if (network == nullptr) return false;
   const auto cells = static_cast<std::int64_t>(std::ceil(room_m / network->frame().cell_m));
   return network->may_have_water(network->square_of(block, 0).grown(cells));
+}
+
+bool GroundStack::may_have_network_water(core::BlockCoord block, glm::dvec2 local_m,
+                                         double margin_m) const {
+  if (network == nullptr) return false;
+  const double cell_m = network->frame().cell_m;
+  const auto corner = network->square_of(block, 0);
+  const auto cell = glm::i64vec2(glm::floor(local_m / cell_m));
+  const auto cells = static_cast<std::int64_t>(std::ceil((margin_m + 0.01) / cell_m));
+  return network->may_have_water(
+      RiverNetwork::Cells{corner.x + cell.x, corner.z + cell.y, 1}.grown(cells));
 }
 
 double GroundStack::error_m(const QuadCoord& node, double spacing_m, double block_m) const {

@@ -51,7 +51,8 @@ struct GroundStack {
   // True if any layer may change heights within a node. May be true although none does.
   bool reaches(const QuadCoord& node, double block_m) const;
   // Returns the pieces of roads that may reach a node, each once.
-  std::vector<const GroundEdit*> roads_in(const QuadCoord& node, double block_m) const;
+  std::vector<const GroundEdit*> roads_in(const QuadCoord& node, double block_m,
+                                          double margin = 0) const;
   // True if there is any river or lake. O(1).
   bool has_water() const { return network != nullptr || shapes.has_water() || edits.has_water(); }
   // The same for pieces of rivers and lakes made by hand; a network has none.
@@ -64,6 +65,8 @@ struct GroundStack {
   // axis beyond it. May be true although it has nothing; always where the margin is much wider than
   // the patches of a network. Some hundred nanoseconds.
   bool may_have_water(core::BlockCoord block, double margin_m, double block_m) const;
+  // The same within a distance of a place in the block, for the network only.
+  bool may_have_network_water(core::BlockCoord block, glm::dvec2 local_m, double margin_m) const;
   // Largest distance between the ground and a mesh of the node with vertices `spacing_m` apart,
   // because of shapes and edits between them. An upper bound in metres; 0: neither.
   double error_m(const QuadCoord& node, double spacing_m, double block_m) const;

@@ -8,6 +8,7 @@
 #include "engine/core/assert.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/world/placement.hpp"
+#include "engine/world/spacing.hpp"
 
 namespace psygen::scene {
 namespace {
@@ -72,7 +73,9 @@ std::vector<Standing> obstacles_on_block(const world::World& world,
   for (const world::Scatter& scatter : world.scatter) {
     const core::Bounds box = registry[scatter.model].bounds(middle_parameters(registry, scatter));
     const glm::vec3 size = box.max - box.min;
-    standing.push_back({static_cast<float>(scatter.count), (size.x + size.z) / 2,
+    const double block_m2 = world.block_size_m() * world.block_size_m();
+    const double share = world::kept_share(scatter.count / block_m2, scatter.spacing_m);
+    standing.push_back({static_cast<float>(scatter.count * share), (size.x + size.z) / 2,
                         std::max(box.max.y, 0.0F), kModelDensity});
   }
   return standing;

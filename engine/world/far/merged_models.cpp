@@ -192,6 +192,7 @@ struct MergedType::Making {
   std::optional<models::BlockGround> ground;  // ground of the current tile, for slopes and heights
   SampleMesh mesh;
   ProxyMesh form;
+  std::vector<std::uint64_t> room;            // for further forms of each scatter
   const models::BlockEdits* edits = nullptr;  // edits of the current block; may be null
 };
 
@@ -247,7 +248,8 @@ void MergedType::add_instance(Instance& instance, const Scattering& scattering,
   const ScatterPlan& how = making.plan.scatters[instance.scatter];
   const NodeBlock& block = instance.block;
   const auto place = scattering.place(*making.ground, instance.index, block.in_tile_m);
-  if (!place) return;
+  if (!place || making.room[instance.scatter] == 0) return;
+  --making.room[instance.scatter];
   instance.place = place->position;
   const glm::dvec2 in_node = block.in_node_m + glm::dvec2(place->position.x, place->position.z);
   instance.place.y =
@@ -363,7 +365,10 @@ core::Bounds MergedType::synthesise(const Parameters& p, int level, const MeshVi
                 walk.drawn_stride(),
                 std::nullopt,
                 {},
+                {},
                 {}};
+  for (const ScatterPlan& how : made.scatters)
+    making.room.push_back(how.forms);
   if (made.vertices > 0) add_scattered(walk, p.edits(), making);
   for (std::size_t i = 0; i < placed.forms.size(); ++i)
     add_placed(placed.forms[i], i < placed.shared_from ? 1 : placed.together, making);
@@ -391,11 +396,13 @@ std::uint64_t merged_identity(const World& world, const models::Registry& regist
     add_real(s.min_height_m);
     add_real(s.max_height_m);
     add_real(s.max_slope_deg);
-    if (s.limits_depth() || s.needs_water()) {
+    if (s.limits_depth() || s.water_reach_m() > 0) {
       add_real(s.max_depth_m);
       add_real(s.near_water_m);
       add_real(world.water.level_m);
     }
+    if (const std::uint64_t site = site_hash(s.site); site != 0) add(site);
+    if (s.site.edge_size < 1) add_real(s.site.edge_size);
     if (const std::uint64_t mask = mask_hash(s.mask); mask != 0) add(mask);
     if (s.keeps_apart() || s.footprint_m > 0 || s.tilt < 1) {
       add_real(s.spacing_m);

@@ -8,6 +8,7 @@
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/world/far/merged_models.hpp"
 #include "engine/world/far/node_walk.hpp"
+#include "engine/world/spacing.hpp"
 
 namespace psygen::world {
 namespace {
@@ -28,9 +29,21 @@ std::uint32_t min_together(double pixels) {
   return static_cast<std::uint32_t>(std::ceil(std::min(ratio * ratio, 1e6)));
 }
 
+// The forms that a node has room for: one for each group, but where instances keep apart, as many
+// as may stand. A node has more only where small patches of allowed ground lie far apart; the last
+// ones are left out there.
+std::uint64_t forms_at_most(const World& world, const Scatter& scatter, std::uint64_t groups) {
+  const double side_m = world.block_size_m();
+  const double share = kept_share(scatter.count / (side_m * side_m), scatter.spacing_m);
+  const auto all = static_cast<double>(groups);
+  const double deviation = std::sqrt(all * share * (1 - share));
+  return std::min(groups, static_cast<std::uint64_t>(std::ceil(all * share + 4 * deviation)));
+}
+
 // `mesh_error_m`: the error that own meshes may have; 0: there are none.
-void plan_scatters(std::span<const FarScatter> scatters, const ImpostorSet* pictures, double side,
-                   std::uint32_t thinning, double mesh_error_m, LevelPlan& plan) {
+void plan_scatters(const World& world, std::span<const FarScatter> scatters,
+                   const ImpostorSet* pictures, double side, std::uint32_t thinning,
+                   double mesh_error_m, LevelPlan& plan) {
   plan.scatters.clear();
   plan.vertices = plan.triangles = 0;
   const double pixels_per_m = kPixelsPerRadian / (kNearestSides * side);
@@ -47,7 +60,8 @@ void plan_scatters(std::span<const FarScatter> scatters, const ImpostorSet* pict
                  : pictured       ? Form::kPicture
                                   : far.form_at(plan.form_level, pixels_per_m);
       const std::uint64_t instances = std::uint64_t{far.scatter().count} << (2 * plan.level);
-      how.forms = (instances + how.together - 1) / how.together;
+      how.groups = (instances + how.together - 1) / how.together;
+      how.forms = forms_at_most(world, far.scatter(), how.groups);
       how.each_is_synthesised = plan.form_level == 1 && !is_billboard(how.form) && far.is_cheap();
       if (mesh_error_m > 0 && how.together == 1 && how.form != Form::kPicture)
         how.mesh = far.own_mesh(pixels_per_m, mesh_error_m);
@@ -179,12 +193,13 @@ LevelPlan plan_level(const World& world, std::span<const FarScatter> scatters,
   plan.form_level = form_level;
   std::uint32_t thinning = form_level <= 3 ? 1 : 3U << (2 * (form_level - 4));
   double error_m = form_error_m(world, form_level);
-  plan_scatters(scatters, pictures, side, thinning, error_m, plan);
+  plan_scatters(world, scatters, pictures, side, thinning, error_m, plan);
   for (int i = 0; i < kCoarserMeshes && plan.vertices > kMaxVertices; ++i)
-    plan_scatters(scatters, pictures, side, thinning, error_m *= 2, plan);
-  if (plan.vertices > kMaxVertices) plan_scatters(scatters, pictures, side, thinning, 0, plan);
+    plan_scatters(world, scatters, pictures, side, thinning, error_m *= 2, plan);
+  if (plan.vertices > kMaxVertices)
+    plan_scatters(world, scatters, pictures, side, thinning, 0, plan);
   while (plan.vertices > kMaxVertices)
-    plan_scatters(scatters, pictures, side, thinning *= 2, 0, plan);
+    plan_scatters(world, scatters, pictures, side, thinning *= 2, 0, plan);
   plan.box = box_of(world, scatters, std::ldexp(world.block_size_m(), level), plan);
   return plan;
 }
@@ -206,7 +221,8 @@ double work_of(const World& world, std::span<const FarScatter> scatters, const L
     const double make = !how.each_is_synthesised && !measured ? 500 : far.is_leafy() ? 3000 : 400;
     const double search =
         (far.scatter().has_filter() ? 200 : 0) + (far.scatter().keeps_apart() ? 300 : 0);
-    sum += (make + search) * static_cast<double>(how.forms) + std::ldexp(80, 2 * plan.level);
+    sum += make * static_cast<double>(how.forms) + search * static_cast<double>(how.groups) +
+           std::ldexp(80, 2 * plan.level);
   }
   return sum + 100;
 }

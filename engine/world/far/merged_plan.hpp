@@ -22,7 +22,8 @@ namespace psygen::world {
 struct ScatterPlan {
   Form form = Form::kTent;
   std::uint32_t together = 1;                 // instances per form
-  std::uint64_t forms = 0;                    // number of forms in the node; 0: left out
+  std::uint64_t groups = 0;                   // groups of so many instances in the node
+  std::uint64_t forms = 0;                    // most forms in the node; 0: left out
   bool each_is_synthesised = false;           // false: forms are made from representatives
   const FarScatter::OwnMesh* mesh = nullptr;  // each shows this mesh of its own; null: the form
 

@@ -171,11 +171,31 @@ inline constexpr auto visit_place = [](auto& scatter, const auto& visit) {
   visit("max_height_m", scatter.max_height_m, ground_height("highest ground with instances"));
   visit("max_slope_deg", scatter.max_slope_deg,
         in("degrees", {0, 90}, {0, 90}, "steepest ground with instances"));
+  visit("min_slope_deg", scatter.site.min_slope_deg,
+        in("degrees", {0, 90}, {0, 60}, "flattest ground with instances"));
+  visit("facing_deg", scatter.site.facing_deg,
+        full_turn("direction that the ground falls in, from north towards east"));
+  visit("facing_spread_deg", scatter.site.facing_spread_deg,
+        in("degrees", {0, 180}, {0, 180}, "largest deviation from facing_deg; 180: any direction"));
   visit(
       "max_depth_m", scatter.max_depth_m,
       in("m", {0, 1e4}, {0, 5}, "deepest water with instances; default: none in rivers and lakes"));
   visit("near_water_m", scatter.near_water_m,
         in("m", {0.1, 1000}, {1, 50}, "instances stand at most this far from water"));
+  visit("max_above_water_m", scatter.site.max_above_water_m,
+        in("m", {0, 1000}, {0, 10}, "highest ground above the water that near_water_m finds"));
+  visit("far_from_water_m", scatter.site.far_from_water_m,
+        in("m", {0, 1000}, {0, 50}, "instances stand farther than this from water"));
+  visit("near_road_m", scatter.site.near_road_m,
+        in("m", {0.1, 1000}, {1, 50}, "instances stand at most this far from the edge of a road"));
+  visit("far_from_road_m", scatter.site.far_from_road_m,
+        in("m", {0, 1000}, {0, 50}, "instances stand farther than this from the edge of a road"));
+  visit("beside_m", scatter.site.beside_m,
+        in("m", {0, 1e5}, {0, 20}, "distance to an instance of the model that beside names"));
+  visit("mask_fade", scatter.mask.fade,
+        fraction("width of the borders of patches: 0 sharp, 1 over the whole patch"));
+  visit("edge_size", scatter.site.edge_size,
+        fraction("part of all ranges in metres that instances at the border of the mask use"));
   visit("spacing_m", scatter.spacing_m,
         in("m", {0, 1e5}, {0, 20},
            "diameter of a disc around each instance; discs of instances do not overlap"));

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <iterator>
 
 #include "engine/world/files/fields.hpp"
@@ -93,6 +92,43 @@ std::int64_t read_count(TableReader& reader) {
   return count;
 }
 
+// Reads the model that instances stand beside, and checks what the rules need.
+void read_site(TableReader& reader, const World& world, const models::Registry& registry,
+               Scatter& scatter) {
+  SiteRules& site = scatter.site;
+  if (std::isfinite(site.max_above_water_m) && !scatter.needs_water())
+    reader.problem("max_above_water_m", "it needs near_water_m");
+  if (site.min_slope_deg > scatter.max_slope_deg)
+    reader.problem("min_slope_deg", "it must not be above max_slope_deg");
+  if (site.near_road_m <= site.far_from_road_m)
+    reader.problem("near_road_m", "it must be above far_from_road_m");
+  if (site.edge_size < 1 && !(scatter.keeps_apart() && scatter.mask.thins()))
+    reader.problem("edge_size", "it needs a mask and spacing_m");
+  std::string name;
+  const bool is_beside = reader.read("beside", name, 64);
+  if (is_beside != scatter.is_beside())
+    return reader.problem("beside", "beside, a model, and beside_m need each other");
+  double widest_m = 0, narrowest_m = std::numeric_limits<double>::infinity();
+  for (std::size_t s = 0; is_beside && s < world.scatter.size(); ++s) {
+    const Scatter& other = world.scatter[s];
+    if (registry[other.model].name() != name || !other.keeps_apart()) continue;
+    site.beside |= std::uint64_t{1} << s;
+    widest_m = std::max(widest_m, other.spacing_m);
+    narrowest_m = std::min(narrowest_m, other.spacing_m);
+  }
+  if (is_beside && site.beside == 0)
+    return reader.problem("beside", "no earlier [[scatter]] with a spacing_m has this model");
+  if (narrowest_m < scatter.spacing_m)
+    reader.problem("beside", fmt::format("spacing_m must be at most {:g} m, as in the earlier "
+                                         "[[scatter]] of this model",
+                                         narrowest_m));
+  if (const double apart_m = (widest_m + scatter.spacing_m) / 2;
+      is_beside && scatter.keeps_apart() && site.beside_m <= apart_m)
+    reader.problem(
+        "beside_m",
+        fmt::format("it must be above {:g} m, because spacings keep both apart", apart_m));
+}
+
 // Reports spacings that reach too far, or over too many candidates to try.
 void check_spacing(TableReader& root, int line, const World& world) {
   double candidates = 0, widest_m = 0;
@@ -101,12 +137,15 @@ void check_spacing(TableReader& root, int line, const World& world) {
     candidates += scatter.count;
     widest_m = std::max(widest_m, scatter.spacing_m);
   }
+  for (const Scatter& scatter : world.scatter)
+    widest_m = std::max(widest_m, scatter.site.beside_m);
   const double sides = widest_m / world.block_size_m();
   if (sides > kMaxSpacingSides)
     return root.problem(
         line, "scatter",
-        fmt::format("spacing_m = {:g} is too much: allowed are {} sides of a block, {:g} m",
-                    widest_m, kMaxSpacingSides, kMaxSpacingSides * world.block_size_m()));
+        fmt::format(
+            "spacing_m or beside_m = {:g} is too much: allowed are {} sides of a block, {:g} m",
+            widest_m, kMaxSpacingSides, kMaxSpacingSides * world.block_size_m()));
   // The strips of blocks that a search walks through.
   const double within = 2 * sides * (2 * std::ceil(sides) + 1) * candidates;
   if (within > kMaxWithinSpacing)
@@ -136,6 +175,7 @@ double read_scatter(TableReader& reader, const models::Registry& registry, const
                    fmt::format("it must be at most {:g} m: half a block's side and {} cells", max_m,
                                kMaxFootCells));
   read_scatter_mask(reader, beside, world, scatter.mask);
+  read_site(reader, world, registry, scatter);
   ModelFields fields = read_model_fields(reader, registry[scatter.model], true);
   reader.finish();
   const bool allowed = check_model(fields, reader.problems()) && !too_many;
@@ -243,17 +283,12 @@ void write_scatters(const World& world, const models::Registry& registry, std::s
     const models::ModelType& type = registry[scatter.model];
     fmt::format_to(out, "\n[[scatter]]\nmodel = {}\ncount = {}\n", toml_string(type.name()),
                    scatter.count);
-    if (std::isfinite(scatter.min_height_m))
-      fmt::format_to(out, "min_height_m = {}\n", scatter.min_height_m);
-    if (std::isfinite(scatter.max_height_m))
-      fmt::format_to(out, "max_height_m = {}\n", scatter.max_height_m);
-    if (scatter.max_slope_deg < 90)
-      fmt::format_to(out, "max_slope_deg = {}\n", scatter.max_slope_deg);
-    if (scatter.limits_depth()) fmt::format_to(out, "max_depth_m = {}\n", scatter.max_depth_m);
-    if (scatter.needs_water()) fmt::format_to(out, "near_water_m = {}\n", scatter.near_water_m);
-    if (scatter.keeps_apart()) fmt::format_to(out, "spacing_m = {}\n", scatter.spacing_m);
-    if (scatter.footprint_m > 0) fmt::format_to(out, "footprint_m = {}\n", scatter.footprint_m);
-    if (scatter.tilt < 1) fmt::format_to(out, "tilt = {}\n", scatter.tilt);
+    write_changed(scatter, Scatter{}, visit_place, text);
+    if (scatter.is_beside()) {
+      const auto first = static_cast<std::size_t>(std::countr_zero(scatter.site.beside));
+      fmt::format_to(out, "beside = {}\n",
+                     toml_string(registry[world.scatter[first].model].name()));
+    }
     write_mask(scatter.mask, text);
     for (std::size_t i = 0; i < scatter.ranges.size(); ++i) {
       const models::ParameterSpec& spec = type.parameters()[i];

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -309,6 +310,11 @@ class SchemaBuilder {
         model_section(SectionKind::kScatter, path, type, "model type of the instances");
     add_required(made, "count", value_of(std::int64_t{s.count}), kCount);
     add_all(made, s, Scatter{}, visit_place);
+    const auto beside = static_cast<std::size_t>(std::countr_zero(s.site.beside));
+    add(made, "beside",
+        text_value(s.is_beside() ? std::string(registry_[world_.scatter[beside].model].name())
+                                 : ""),
+        "", without_limits("model of an earlier [[scatter]] that instances stand beside"));
     add(made, "on_ground",
         {FieldKind::kToml, s.mask.ground == 0 ? "" : toml_grounds(s.mask.ground), {}}, "",
         without_limits("kinds of ground with instances: [\"grass\", \"forest\"]"));

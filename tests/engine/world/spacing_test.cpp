@@ -183,12 +183,15 @@ Difference difference_of(const World& world, int level) {
 
 // Where limits of the ground decide, coarse ground decides a little otherwise.
 TEST(Spacing, StandsFarAsNear) {
-  const World free = parsed(wood()), limited = parsed(wood("spacing_m = 5\nmax_slope_deg = 40"));
+  const World free = parsed(wood()), limited = parsed(wood("spacing_m = 5\nmax_slope_deg = 40")),
+              beside =
+                  parsed(wood("spacing_m = 5", "spacing_m = 1\nbeside = \"tree\"\nbeside_m = 6"));
   for (const int level : {1, 2, 3, 4}) {
     const Difference in_free = difference_of(free, level),
                      in_limited = difference_of(limited, level);
     EXPECT_GT(in_free.near, 200U);
     EXPECT_EQ(in_free.differ, 0U);
+    EXPECT_EQ(difference_of(beside, level).differ, 0U);
     EXPECT_GT(in_limited.near, 200U);
     EXPECT_LE(in_limited.differ, level <= 2 ? 0 : in_limited.near / 5);
   }
