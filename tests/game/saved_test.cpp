@@ -153,8 +153,8 @@ TEST_F(Saves, AChangedLandKeepsTheGameAndSaysSo) {
   // A newer version without boulders, in which small stones have other indices.
   const auto land = *Land::load(3);
   auto& scatter = land->world.scatter;
-  ASSERT_EQ(scatter.size(), 10U);
-  scatter.erase(scatter.begin() + 6);
+  ASSERT_EQ(scatter.size(), 12U);
+  scatter.erase(scatter.begin() + 7);
   {
     auto again = *Play::create(land->world, land->registry);
     auto saved = Saved::open(file(), *again);

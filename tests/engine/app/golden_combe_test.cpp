@@ -62,7 +62,7 @@ TEST_F(GoldenCombe, LiesInTheShadeOfItsHills) {
 TEST_F(GoldenCombe, MergedMeshesHaveTheLightOfTheirParts) {
   for (const bool with_cascades : {false, true}) {
     if (with_cascades) open(render::Preset::kHigh);
-    const core::CameraPose at = pose(100);
+    const core::CameraPose at = pose(160);
     session_->scene().settle(at);
     ASSERT_TRUE(session_->tick(at, 1.0 / 60.0));
     std::map<std::uint32_t, std::set<float>> light;  // of each mesh that is drawn in parts

@@ -56,8 +56,13 @@ TEST_P(OcclusionOf, MakesNoDifferenceToAnyImage) {
   Studio studio(GetParam(), occlusion_view());
   std::uint32_t hidden = 0;
   int turn = 0;
-  for (const core::BlockCoord block :
-       {core::BlockCoord{250, 250}, {140, 311}, {402, 199}, {81, 104}, {303, 290}, {199, 420}}) {
+  for (const core::BlockCoord block : {core::BlockCoord{250, 250},
+                                       {140, 311},
+                                       {402, 199},
+                                       {81, 104},
+                                       {303, 290},
+                                       {199, 420},
+                                       {355, 77}}) {
     for (const double height_m : {2.0, 12.0, 60.0, 250.0}) {
       const core::CameraPose pose = studio.above(block, 13, 50, height_m, 0.9 * turn++, -0.06);
       EXPECT_EQ(differing(studio, pose, hidden), 0u)
