@@ -88,6 +88,69 @@ TEST(Spacing, NoTwoDiscsOverlapAcrossBlocks) {
   }
 }
 
+// Places of trees and rocks with their radii at the ground.
+struct Stem {
+  glm::dvec2 at_m;
+  double radius_m;
+  bool is_rock;
+};
+
+// Sorts stems into squares of this side and compares those of neighbouring squares.
+std::size_t overlaps_of(const std::vector<Stem>& all, double side_m) {
+  std::map<std::pair<int, int>, std::vector<const Stem*>> squares;
+  std::size_t overlaps = 0;
+  for (const Stem& stem : all) {
+    const int x = static_cast<int>(std::floor(stem.at_m.x / side_m));
+    const int z = static_cast<int>(std::floor(stem.at_m.y / side_m));
+    for (int k = 0; k < 9; ++k) {
+      const auto square = squares.find({x + k % 3 - 1, z + k / 3 - 1});
+      if (square == squares.end()) continue;
+      for (const Stem* other : square->second) {
+        const glm::dvec2 away = stem.at_m - other->at_m;
+        const bool both_rocks = stem.is_rock && other->is_rock;
+        overlaps += !both_rocks && std::hypot(away.x, away.y) < stem.radius_m + other->radius_m;
+      }
+    }
+    squares[{x, z}].push_back(&stem);
+  }
+  return overlaps;
+}
+
+// The stems of side * side blocks.
+std::vector<Stem> stems_of(const World& world, const models::Registry& types, int side) {
+  std::vector<Stem> all;
+  std::vector<Placement> placed;
+  for (int i = 0; i < side * side; ++i) {
+    const core::BlockCoord block{30 + i % side, 30 + i / side};
+    place_models(world, types, block, placed);
+    for (const Placement& p : placed) {
+      const models::ModelType& type = types[p.model];
+      if (type.name() == "grass") continue;
+      const auto radius = static_cast<std::size_t>(models::parameter_index(type, "radius_m"));
+      all.push_back({glm::dvec2(block.x, block.z) * world.block_size_m() +
+                         glm::dvec2(p.position.x, p.position.z),
+                     p.parameters.real(radius), type.name() == "rock"});
+    }
+  }
+  return all;
+}
+
+// The worlds of the paper are as the paper has them.
+TEST(Spacing, NoTrunkOfAShippedWorldStandsInAnotherOrInARock) {
+  for (const auto& [name, text] : testing::shipped_worlds()) {
+    models::Registry types = models::make_standard_registry();
+    const auto world = parse_world(text, name, types);
+    ASSERT_TRUE(world) << world.error().message;
+    const std::vector<Stem> all = stems_of(*world, types, 12);
+    if (name == "paper.toml" || name == "endless.toml") {
+      EXPECT_GT(overlaps_of(all, 8), 0U) << name;
+      continue;
+    }
+    EXPECT_GT(all.size(), 500U) << name;
+    EXPECT_EQ(overlaps_of(all, 8), 0U) << name;
+  }
+}
+
 // Thinning by random priorities keeps (1 - e^-n) / n of n candidates within the spacing.
 TEST(Spacing, KeepsTheShareThatTheFormulaSays) {
   for (const double spacing_m : {2.0, 3.0, 6.0}) {
