@@ -30,8 +30,8 @@ glm::dvec2 draw_place(core::RandomStream& random, double block_m) {
   return {x, coordinate()};
 }
 
-BlockObstacles::BlockObstacles(const World& world, core::BlockCoord block)
-    : world_(world), block_(block) {}
+BlockObstacles::BlockObstacles(const World& world, core::BlockCoord block, SpacedBlocks* shared)
+    : world_(world), block_(block), shared_(shared) {}
 BlockObstacles::~BlockObstacles() = default;
 
 double BlockObstacles::block_m() const {
@@ -58,7 +58,7 @@ bool BlockObstacles::may_have_water(double margin_m) {
 }
 
 Spacing& BlockObstacles::others() {
-  if (!others_) others_ = std::make_unique<Spacing>(world_, block_);
+  if (!others_) others_ = std::make_unique<Spacing>(world_, block_, shared_);
   return *others_;
 }
 

@@ -18,7 +18,8 @@
 
 namespace psygen::world {
 
-class Spacing;        // spacing.hpp
+class Spacing;  // spacing.hpp
+class SpacedBlocks;
 struct WaterSurface;  // water.hpp
 
 // An instance tries this many random positions until its Scatter allows one. Instances that keep
@@ -37,8 +38,8 @@ glm::dvec2 draw_place(core::RandomStream& random, double block_m);
 // place of a block. Found when they are first asked for.
 class BlockObstacles {
  public:
-  // `world` must outlive it.
-  BlockObstacles(const World& world, core::BlockCoord block);
+  // `world` must outlive it, and so must `shared`: blocks that several of these share, or null.
+  BlockObstacles(const World& world, core::BlockCoord block, SpacedBlocks* shared = nullptr);
   ~BlockObstacles();
   core::BlockCoord block() const { return block_; }
   double block_m() const;
@@ -52,6 +53,7 @@ class BlockObstacles {
  private:
   const World& world_;
   core::BlockCoord block_;
+  SpacedBlocks* shared_;
   // Answers by margin. A map keeps its answers in place.
   std::map<double, std::vector<const models::GroundEdit*>> roads_;
   std::vector<std::pair<double, bool>> water_;

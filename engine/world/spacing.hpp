@@ -19,11 +19,53 @@ namespace psygen::world {
 // metre: (1 − e^−λ) / λ, with λ of them within one spacing. 1 without a spacing.
 double kept_share(double per_m2, double spacing_m);
 
-// The instances that keep apart on a block and around it, drawn when they are first needed.
+// An instance that tries to stand.
+struct Candidate {
+  glm::dvec2 at_m{0.0};    // from its block's corner
+  std::uint64_t turn = 0;  // random: the higher comes first
+  std::uint32_t index = 0, scatter = 0;
+  std::optional<bool> is_allowed, stands;  // by its own scatter; and by its neighbours, too
+};
+
+// A block with those of its candidates that matter, by ascending x.
+struct SpacedBlock {
+  SpacedBlock(const World& world, core::BlockCoord at, SpacedBlocks* shared)
+      : block(at), obstacles(world, at, shared), searches(world.scatter.size()) {}
+  SpacedBlock(const SpacedBlock&) = delete;
+  SpacedBlock& operator=(const SpacedBlock&) = delete;
+
+  core::BlockCoord block;
+  BlockObstacles obstacles;
+  std::vector<Candidate> candidates;
+  std::optional<models::BlockGround> ground;         // without edits
+  std::vector<std::optional<PlaceSearch>> searches;  // of each scatter
+};
+
+// The blocks that one or more Spacing ask about, drawn when they are first needed.
+class SpacedBlocks {
+ public:
+  // With a centre only the candidates that may reach this block are drawn; without one, blocks
+  // share all. `world` must outlive it.
+  explicit SpacedBlocks(const World& world, std::optional<core::BlockCoord> centre = {});
+  SpacedBlock& at(core::BlockCoord block);
+  // The candidate of instance `index`.
+  Candidate draw(core::BlockCoord block, std::uint32_t index) const;
+  double widest_m() const { return widest_m_; }
+
+ private:
+  const World& world_;
+  std::optional<core::BlockCoord> centre_;
+  double size_m_, widest_m_ = 0;       // the widest spacing
+  double reach_m_ = 0;                 // the largest distance to an instance that matters
+  std::vector<std::uint32_t> firsts_;  // index of each scatter's first instance
+  std::vector<std::unique_ptr<SpacedBlock>> blocks_;
+};
+
+// The instances that keep apart on a block and around it.
 class Spacing {
  public:
-  // `world` must outlive it.
-  Spacing(const World& world, core::BlockCoord block);
+  // `world` and `shared` (null: none) must outlive it.
+  Spacing(const World& world, core::BlockCoord block, SpacedBlocks* shared);
 
   // True if instance `index` of the block gives way to another.
   // `ground` and `corner_m` are those of PlaceSearch::find(). Instances of other blocks stand on
@@ -35,40 +77,31 @@ class Spacing {
                   glm::dvec2 place_m);
 
  private:
-  struct Candidate {
-    glm::dvec2 at_m{0.0};    // from its block's corner
-    std::uint64_t turn = 0;  // random: the higher comes first
-    std::uint32_t index = 0, scatter = 0;
-    std::optional<bool> is_allowed, stands;
-  };
-  // A block with its candidates by ascending x.
+  // A block beside ours, or ours.
   struct Beside {
     glm::ivec2 offset;  // blocks
-    BlockObstacles obstacles;
-    std::vector<Candidate> candidates;
-    std::optional<models::BlockGround> ground;
+    SpacedBlock* spaced;
   };
   // A ground, and where a block's corner is in it.
   struct Below {
     const models::BlockGround& ground;
     glm::dvec2 corner_m;
   };
-  Beside& beside(glm::ivec2 offset);
-  Candidate draw(core::BlockCoord block, std::uint32_t scatter, std::uint32_t index) const;
-  bool comes_first(const Candidate& a, glm::ivec2 a_block, const Candidate& b) const;
-  Below below(Beside& block, const models::BlockGround& ground, glm::dvec2 corner_m) const;
-  bool is_allowed(Beside& block, Candidate& candidate, const Below& below) const;
-  // True if `is_wanted(block, candidate, squared distance)` is, for a candidate within reach of a
+  Beside beside(glm::ivec2 offset);
+  bool comes_first(const Candidate& a, core::BlockCoord a_block, const Candidate& b) const;
+  Below below(const Beside& beside, const models::BlockGround& ground, glm::dvec2 corner_m) const;
+  bool is_allowed(const Beside& beside, Candidate& candidate, const Below& below) const;
+  // True if `is_wanted(beside, candidate, squared distance)` is, for a candidate within reach of a
   // place in the block.
   template <class IsWanted>
   bool any_within(glm::dvec2 place_m, double reach_m, const IsWanted& is_wanted);
 
   const World& world_;
   core::BlockCoord block_;
-  double size_m_, widest_spacing_m_ = 0;
-  double reach_m_ = 0;                 // the largest distance to an instance that matters
-  std::vector<std::uint32_t> firsts_;  // index of each scatter's first instance
-  std::vector<std::unique_ptr<Beside>> beside_;
+  double size_m_;
+  std::unique_ptr<SpacedBlocks> own_;  // null: shared ones
+  SpacedBlocks& blocks_;
+  std::vector<Beside> beside_;
 };
 
 }  // namespace psygen::world

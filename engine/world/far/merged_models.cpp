@@ -18,6 +18,7 @@
 #include "engine/world/far/proxy_writer.hpp"
 #include "engine/world/ground_blends.hpp"
 #include "engine/world/placement.hpp"
+#include "engine/world/spacing.hpp"
 
 namespace psygen::world {
 namespace {
@@ -307,13 +308,17 @@ void MergedType::add_scatter(std::size_t s, const NodeBlock& block, BlockObstacl
 
 void MergedType::add_scattered(const NodeWalk& walk, const models::EditLayer* edits,
                                Making& making) const {
+  const std::size_t questions = questions_per_tile(*world_, making.plan);
+  constexpr std::uint32_t kSharing = 64;  // 8 × 8 blocks draw their candidates together
+  std::optional<SpacedBlocks> spaced;
   for (std::uint32_t i = 0; i < walk.block_count(); ++i) {
     if (walk.starts_tile(i)) making.ground.reset();
     const NodeBlock block = walk.block(i);
     if (!world_->contains(block.coord)) continue;
-    if (!making.ground) walk.make_ground(i, making.ground);
+    if (!making.ground) walk.make_ground(i, questions, making.ground);
     making.edits = edits != nullptr ? edits->block(block.coord) : nullptr;
-    BlockObstacles obstacles(*world_, block.coord);
+    if (i % kSharing == 0) spaced.emplace(*world_);
+    BlockObstacles obstacles(*world_, block.coord, &*spaced);
     for (std::size_t s = 0; s < scatters_.size(); ++s)
       add_scatter(s, block, obstacles, making);
   }

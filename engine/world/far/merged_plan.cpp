@@ -204,14 +204,24 @@ LevelPlan plan_level(const World& world, std::span<const FarScatter> scatters,
   return plan;
 }
 
+std::size_t questions_per_tile(const World& world, const LevelPlan& plan) {
+  constexpr std::uint64_t kTries = 4;  // of the positions that an instance may try, about
+  std::uint64_t groups = 0;
+  for (const ScatterPlan& how : plan.scatters)
+    groups += how.groups;
+  return static_cast<std::size_t>(kTries * groups / ground_tiles(world, plan.level));
+}
+
 double work_of(const World& world, std::span<const FarScatter> scatters, const LevelPlan& plan) {
+  constexpr double kQuestion = 1000;  // where a tile has too few of them for all its heights
   const auto vertices = static_cast<double>(world.terrain.integer(models::kTerrainSize));
   const double ground = 0.35 * vertices * vertices *
                         static_cast<double>(world.terrain.integer(models::kTerrainOctaves)) *
                         (world.terrain.real(models::kTerrainWarp) > 0 ? 8 : 1) *
                         (world.has_costly_heights() ? 10 : 1);
   const std::uint32_t tiles = plan.vertices > 0 ? ground_tiles(world, plan.level) : 0;
-  double sum = ground * static_cast<double>(tiles + 1);  // 1: the whole node
+  const auto questions = static_cast<double>(questions_per_tile(world, plan));
+  double sum = ground + std::min(ground, kQuestion * questions) * tiles;
   for (std::size_t s = 0; s < plan.scatters.size(); ++s) {
     const ScatterPlan& how = plan.scatters[s];
     const FarScatter& far = scatters[s];

@@ -49,6 +49,9 @@ struct LevelPlan {
 LevelPlan plan_level(const World& world, std::span<const FarScatter> scatters,
                      const ImpostorSet* pictures, int level, int form_level);
 
+// About how often its instances ask for the ground of one tile (NodeWalk).
+std::size_t questions_per_tile(const World& world, const LevelPlan& plan);
+
 // Relative time for making the mesh. The unit is close to a nanosecond; use only ratios.
 double work_of(const World& world, std::span<const FarScatter> scatters, const LevelPlan& plan);
 

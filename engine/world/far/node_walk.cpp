@@ -1,8 +1,10 @@
 #include "engine/world/far/node_walk.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/models/terrain/grid.hpp"
+#include "engine/models/terrain/terrain.hpp"
 
 namespace psygen::world {
 namespace {
@@ -30,7 +32,10 @@ glm::dvec2 metres(std::uint32_t x, std::uint32_t z, double block_size_m) {
 }  // namespace
 
 int tile_level(const World& world, int node_level) {
+  const auto has_limits = [](const Scatter& scatter) { return scatter.has_filter(); };
   if (node_level <= 2) return 0;
+  const bool cheap = !world.has_costly_heights() && world.terrain.real(models::kTerrainWarp) == 0;
+  if (cheap && std::ranges::any_of(world.scatter, has_limits)) return 0;
   return node_level - (world.has_costly_heights() ? 1 : 2);
 }
 
@@ -55,13 +60,14 @@ NodeBlock NodeWalk::block(std::uint32_t ordinal) const {
           metres(x & in_tile, z & in_tile, size)};
 }
 
-void NodeWalk::make_ground(std::uint32_t ordinal, std::optional<models::BlockGround>& out) const {
+void NodeWalk::make_ground(std::uint32_t ordinal, std::size_t questions,
+                           std::optional<models::BlockGround>& out) const {
   models::Parameters terrain = world_.terrain;
   terrain.set_integer(models::kTerrainNodeLevel, tile_);
   const std::uint32_t x = even_bits(ordinal) >> tile_, z = even_bits(ordinal >> 1) >> tile_;
   const core::BlockCoord tile{shifted(node_.x, level_ - tile_, x),
                               shifted(node_.z, level_ - tile_, z)};
-  out.emplace(terrain, tile, kMany);
+  out.emplace(terrain, tile, questions);
 }
 
 models::BlockGround NodeWalk::whole_ground(const models::EditLayer* edits) const {

@@ -22,10 +22,12 @@ struct NodeBlock {
 };
 
 // Node level of the tiles of a node. Nodes of levels 1 and 2 have the terrain's own lattice (such
-// as 1 m). From there on the spacing doubles with each level, so no node has more than 16 tiles.
-// With costly heights nodes from level 3 on have four tiles, the grounds of the nodes below.
+// as 1 m), and so have all others if heights are cheap, without a warp, and a scatter has limits:
+// near and far decide alike then. Else the spacing doubles with each level from there on, so no
+// node has more than 16 tiles. With costly heights nodes from level 3 on have four, the grounds of
+// the nodes below.
 int tile_level(const World& world, int node_level);
-// Number of tiles of a node, 1 … 16.
+// Number of tiles of a node.
 std::uint32_t ground_tiles(const World& world, int node_level);
 
 // The level of detail of the terrain that nodes of level 1 and above draw.
@@ -45,8 +47,9 @@ class NodeWalk {
   bool starts_tile(std::uint32_t ordinal) const {
     return (ordinal & ((1U << (2 * tile_)) - 1)) == 0;
   }
-  // Evaluates the ground of the tile with this block.
-  void make_ground(std::uint32_t ordinal, std::optional<models::BlockGround>& out) const;
+  // Makes the ground of the tile with this block, for so many questions (BlockGround).
+  void make_ground(std::uint32_t ordinal, std::size_t questions,
+                   std::optional<models::BlockGround>& out) const;
   // The ground of the whole node with these edits (null: without), which must outlive it; and the
   // stride for BlockGround::at() that gives the drawn ground.
   models::BlockGround whole_ground(const models::EditLayer* edits) const;

@@ -216,17 +216,18 @@ TEST(Spacing, AFelledTreePlantsNoOther) {
 struct Difference {
   std::size_t differ = 0, near = 0;
 };
-Difference difference_of(const World& world, int level) {
+Difference difference_of(const World& world, int level, bool shares = false) {
+  SpacedBlocks shared(world);
   const NodeWalk walk(world, {0, 0}, level);
   std::optional<models::BlockGround> ground;
   Difference sum;
   for (std::uint32_t i = 0; i < walk.block_count(); ++i) {
-    if (walk.starts_tile(i)) walk.make_ground(i, ground);
+    if (walk.starts_tile(i)) walk.make_ground(i, 10'000, ground);
     const NodeBlock block = walk.block(i);
     std::map<std::uint32_t, glm::vec3> near;
     for (const Placement& p : standing(world, block.coord))
       near[p.index] = p.position;
-    BlockObstacles obstacles(world, block.coord);
+    BlockObstacles obstacles(world, block.coord, shares ? &shared : nullptr);
     for (std::uint32_t s = 0, first = 0; s < 2; first += world.scatter[s++].count) {
       const Scatter& scatter = world.scatter[s];
       const Scattering far(world, registry()[scatter.model], scatter, obstacles);
@@ -244,7 +245,7 @@ Difference difference_of(const World& world, int level) {
   return sum;
 }
 
-// Where limits of the ground decide, coarse ground decides a little otherwise.
+// Where heights are cheap, limits of the ground are those of the exact ground.
 TEST(Spacing, StandsFarAsNear) {
   const World free = parsed(wood()), limited = parsed(wood("spacing_m = 5\nmax_slope_deg = 40")),
               beside =
@@ -254,9 +255,11 @@ TEST(Spacing, StandsFarAsNear) {
                      in_limited = difference_of(limited, level);
     EXPECT_GT(in_free.near, 200U);
     EXPECT_EQ(in_free.differ, 0U);
+    for (const World* each : {&free, &limited, &beside})
+      EXPECT_EQ(difference_of(*each, level, true).differ, 0U);
     EXPECT_EQ(difference_of(beside, level).differ, 0U);
     EXPECT_GT(in_limited.near, 200U);
-    EXPECT_LE(in_limited.differ, level <= 2 ? 0 : in_limited.near / 5);
+    EXPECT_EQ(in_limited.differ, 0U);
   }
 }
 

@@ -56,7 +56,7 @@ TEST(NodeWalk, FindsTheGroundOfTheBlocksUnderItsTiles) {
     const NodeWalk walk(world, {INT32_MAX >> level, INT32_MIN >> level}, level);
     std::optional<models::BlockGround> ground;
     for (std::uint32_t i = 0; i < walk.block_count(); ++i) {
-      if (walk.starts_tile(i)) walk.make_ground(i, ground);
+      if (walk.starts_tile(i)) walk.make_ground(i, 10'000, ground);
       const NodeBlock block = walk.block(i);
       const glm::dvec2 at = glm::dvec2(16, 8) * world.cell_m();
       const models::GroundPoint tile = ground->at(block.in_tile_m + at);
