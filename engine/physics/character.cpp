@@ -198,7 +198,10 @@ void Character::move_down(double drop) {
   const double fall_speed = -velocity.y();
   feet_.setY(support.height);
   floor_ = floor;
-  on_ground = is_walkable(support.normal) || (support.height <= ground.height_m && is_in_hollow());
+  // The foot of a rock beside it does not lift it off the ground.
+  const bool on_terrain = support.height <= ground.height_m + CapsuleMover::kSkinM;
+  on_ground = is_walkable(support.normal) || (on_terrain && is_walkable(to_bt(ground.normal))) ||
+              (support.height <= ground.height_m && is_in_hollow());
   velocity.setY(0);
   if (on_ground) return;
   // Too steep: the character slides down.
