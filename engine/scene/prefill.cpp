@@ -113,7 +113,8 @@ std::uint64_t Scene::settle(const core::CameraPose& pose, const Progress& progre
   State& s = *state_;
   std::uint64_t synthesised = 0;
   int quiet = 0, idle = 0, refused = 0;
-  float least = std::numeric_limits<float>::infinity();  // coarsening of earlier tries
+  bool tried_again = false;
+  float first_try = std::numeric_limits<float>::infinity();  // its coarsening
   double fraction = 0;
   const auto go_on = [&] { return !progress || progress("filling the cache", fraction); };
   s.pressure = {};
@@ -137,10 +138,15 @@ std::uint64_t Scene::settle(const core::CameraPose& pose, const Progress& progre
     const double done = static_cast<double>(synthesised);
     fraction = done / (done + missing + 1.0);
     if (!go_on()) break;
-    // Memory may have been short only until the meshes of another place were evicted.
-    if (quiet == kQuietTicks && s.quality.coarsening > 1 && s.quality.coarsening < least) {
+    // Memory may have been short only until the meshes of another place were evicted: tries full
+    // detail once more, and returns if that is no better.
+    if (quiet == kQuietTicks && !tried_again && s.quality.coarsening > 1) {
+      tried_again = true;
+      quiet = refused = 0;
+      first_try = std::exchange(s.quality.coarsening, 1.0F);
+    } else if (tried_again && s.quality.coarsening > first_try) {
       quiet = 0;
-      least = std::exchange(s.quality.coarsening, 1.0F);
+      s.quality.coarsening = std::exchange(first_try, std::numeric_limits<float>::infinity());
     }
   }
   if (s.output.renderer != nullptr) prepare_effects(s.entities, *s.output.renderer);
