@@ -124,6 +124,11 @@ models::Registry without_own_types(WorldFacts& facts) {
 // True if worlds without edits differ in nothing that meshes or places depend on.
 bool same_but_looks(world::World a, const world::World& b) {
   if (world::placing_hash(a) != world::placing_hash(b)) return false;
+  const auto asks_for_water = [](const world::Scatter& scatter) {
+    return scatter.limits_depth() || scatter.water_reach_m() > 0;
+  };
+  if (a.water.level_m != b.water.level_m && std::ranges::any_of(a.scatter, asks_for_water))
+    return false;
   a.name = b.name;
   a.sky = b.sky;
   a.water = b.water;

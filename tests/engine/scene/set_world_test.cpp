@@ -227,6 +227,12 @@ TEST_F(SetWorld, OtherMasksLeadToTheSameSceneAsANewOne) {
   expect_like_new(thin, replaced(thin, "mask_noise_m = 60", "mask_noise_m = 60\nmask_share = 0.2"));
 }
 
+TEST_F(SetWorld, AnotherSeaLevelMovesWhatStandsByTheWater) {
+  const std::string wet =
+      replaced(paper_, "count = 23", "count = 23\nmax_depth_m = 0") + "\n[water]\nlevel_m = 55\n";
+  expect_like_new(wet, replaced(wet, "level_m = 55", "level_m = 62"));
+}
+
 std::string with_road(const std::string& text, const char* width = "8") {
   return text +
          "\n[[road]]\npoints_m = [[15900, 16160], [16160, 16100], [16300, 16200]]\nwidth_m = " +
