@@ -1,6 +1,8 @@
 #include "editor/document/field_value.hpp"
 
+#include <bit>
 #include <optional>
+#include <vector>
 
 #include "engine/models/model_type.hpp"
 #include "engine/world/files/text_edit.hpp"
@@ -31,6 +33,15 @@ std::optional<std::string_view> model_of(const ParsedWorld& parsed, const world:
   return std::nullopt;
 }
 
+// The name of the model type that the instances of a scatter stand beside.
+std::optional<std::string_view> beside_of(const ParsedWorld& parsed, const world::TextPath& table) {
+  const std::vector<world::Scatter>& scatter = parsed.world.scatter;
+  const std::size_t item = table.steps[1].index;
+  if (item >= scatter.size() || !scatter[item].is_beside()) return std::nullopt;
+  const auto first = static_cast<std::size_t>(std::countr_zero(scatter[item].site.beside));
+  return parsed.registry[scatter[first].model].name();
+}
+
 // The text with a new name in all tables that use the model type of `path`, a name.
 Text with_model_renamed(const std::string& text, const ParsedWorld& before,
                         const world::TextPath& path, std::string_view name) {
@@ -43,6 +54,7 @@ Text with_model_renamed(const std::string& text, const ParsedWorld& before,
     old_name = world.models[item].name;
   if (old_name.empty()) return text;
   const auto uses = [&](const world::TextPath& value) {
+    if (is_key_of_item(value, "beside")) return beside_of(before, value.parent()) == old_name;
     return is_key_of_item(value, "model") && model_of(before, value.parent()) == old_name;
   };
   return world::with_each_value(text, uses, name);

@@ -203,6 +203,16 @@ TEST(Document, ARenamedSpeciesIsRenamedInItsScattersAndADuplicateGetsAFreeName) 
   EXPECT_TRUE(good(document.remove_table({"species", 1})));
 }
 
+TEST(Document, ASpeciesThatOthersStandBesideIsRenamedThereToo) {
+  Opened opened(testing::read(source_file("game/worlds/silver_combe.toml")));
+  Document& document = opened.document;
+  EXPECT_TRUE(good(document.set_value({"species", 0, "name"}, "\"elder\"")));
+  EXPECT_THAT(document.text(), HasSubstr("beside = \"elder\""));
+  EXPECT_TRUE(good(document.set_value({"scatter", 4, "beside"}, "\"birch\"")));
+  EXPECT_EQ(document.world().scatter[4].site.beside, 0b10U);
+  EXPECT_TRUE(good(document.reset_value({"scatter", 4, "beside"})));
+}
+
 TEST(Document, AScatterWithAnotherModelLosesTheParametersOfTheOldOne) {
   Opened opened;
   Document& document = opened.document;
