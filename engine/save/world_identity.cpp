@@ -191,6 +191,14 @@ std::vector<WorldPart> parts_of(const world::World& world, const models::Registr
       if (scatter.mask.ground != 0) f.add("ground", world::placing_hash(world));
       if (scatter.limits_depth() || scatter.water_reach_m() > 0)
         f.add("water", world.water.level_m);
+      if (scatter.keeps_apart()) return;  // tries one place, so that nothing moves it
+      if (scatter.site.asks_for_roads()) f.add("shape", world::shape_hash(world));
+      for (const world::Scatter& other : world.scatter) {
+        if (!scatter.is_beside() || !other.keeps_apart()) continue;
+        add_limits(f, other);
+        f.add("count", std::uint64_t{other.count});
+        f.add("spacing_m", other.spacing_m);
+      }
     };
     part(kScatter, add, name, scatter.count);
   }

@@ -68,6 +68,7 @@ PlaceSearch::PlaceSearch(const World& world, const Scatter& scatter, BlockObstac
       size_m_(static_cast<float>(world.block_size_m())),
       scatter_(scatter),
       tries_(scatter.keeps_apart() ? 1 : kPlacementTries),
+      has_filter_(scatter.has_filter()),
       obstacles_(block),
       block_(block.block()),
       min_up_(static_cast<float>(std::cos(glm::radians(scatter.max_slope_deg)))),
@@ -133,12 +134,11 @@ std::optional<WaterSurface> PlaceSearch::water_over(glm::dvec2 local_m, bool is_
 
 // Looks at the position, and at two rings of eight places around it.
 bool PlaceSearch::is_near_water(const models::BlockGround& ground, glm::dvec2 corner_m,
-                                glm::dvec2 local_m, double reach_m, double below_m) const {
-  const double here_m = ground.at(corner_m + local_m).height_m;
+                                glm::dvec2 local_m, double reach_m, double lowest_m) const {
   const bool is_inland = may_be_near_inland(local_m, reach_m);
   const auto is_wet = [&](glm::dvec2 at_m) {
     const auto water = water_over(at_m, is_inland);
-    return water && here_m - water->surface_m <= below_m &&
+    return water && water->surface_m >= lowest_m &&
            water->depth_over(ground.at(corner_m + at_m).height_m) > 0;
   };
   if (is_wet(local_m)) return true;
@@ -178,14 +178,14 @@ std::optional<Foothold> PlaceSearch::find(const models::BlockGround& ground, std
   for (int i = 0; i < tries_; ++i) {
     const glm::dvec2 at_m = draw_place(random, static_cast<double>(size_m_));
     const models::GroundPoint point = ground.at(corner_m + at_m);
-    if (scatter_.has_filter() && !may_stand(point, at_m)) continue;
+    if (has_filter_ && !may_stand(point, at_m)) continue;
     const SiteRules& site = scatter_.site;
     if (site.asks_for_roads() && !has_its_road(at_m)) continue;
-    if (scatter_.needs_water() &&
-        !is_near_water(ground, corner_m, at_m, scatter_.near_water_m, site.max_above_water_m))
+    if (scatter_.needs_water() && !is_near_water(ground, corner_m, at_m, scatter_.near_water_m,
+                                                 point.height_m - site.max_above_water_m))
       continue;
     if (site.far_from_water_m > 0 && is_near_water(ground, corner_m, at_m, site.far_from_water_m,
-                                                   std::numeric_limits<double>::infinity()))
+                                                   -std::numeric_limits<double>::infinity()))
       continue;
     if (scatter_.is_beside() && !has_its_neighbours(ground, corner_m, at_m)) continue;
     if (is_left_out(index, at_m, point.height_m)) return std::nullopt;

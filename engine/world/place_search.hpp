@@ -86,9 +86,9 @@ class PlaceSearch {
   bool may_stand(const models::GroundPoint& ground, glm::dvec2 local_m) const;
   bool faces(const glm::vec3& normal) const;
   bool has_its_road(glm::dvec2 local_m) const;
-  // True if there is water within `reach_m`, at most `below_m` below the position.
+  // True if there is water within `reach_m` of the position, on or above this height.
   bool is_near_water(const models::BlockGround& ground, glm::dvec2 corner_m, glm::dvec2 local_m,
-                     double reach_m, double below_m) const;
+                     double reach_m, double lowest_m) const;
   bool has_its_neighbours(const models::BlockGround& ground, glm::dvec2 corner_m,
                           glm::dvec2 local_m) const;
   // True if inland water may be within reach of the position.
@@ -102,6 +102,7 @@ class PlaceSearch {
   float size_m_;
   const Scatter& scatter_;
   int tries_;
+  bool has_filter_;
   BlockObstacles& obstacles_;
   core::BlockCoord block_;
   float min_up_, max_up_, min_facing_;  // of the unit normal; cosine between slope and `facing_`

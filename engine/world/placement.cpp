@@ -55,7 +55,9 @@ void stand_on_edits(const Grounds& grounds, const Scatter& scatter, Foothold& pl
 void place_instances(const World& world, const models::Registry& registry, core::BlockCoord block,
                      const Grounds& grounds, const models::BlockEdits* edits,
                      const std::vector<bool>* wanted, std::vector<Placement>& out) {
-  BlockObstacles obstacles(world, block);
+  std::optional<SpacedBlocks> shared;  // each block once, however long the chains of `beside` are
+  if (std::ranges::any_of(world.scatter, &Scatter::is_beside)) shared.emplace(world);
+  BlockObstacles obstacles(world, block, shared ? &*shared : nullptr);
   std::uint32_t first = 0;
   for (std::size_t s = 0; s < world.scatter.size(); first += world.scatter[s++].count) {
     if (wanted != nullptr && !(*wanted)[s]) continue;

@@ -13,12 +13,12 @@ namespace psygen::world {
 double kept_share(double per_m2, double spacing_m) {
   const core::RoundToNearest rounding;
   const double within = per_m2 * std::numbers::pi * spacing_m * spacing_m;
-  if (within <= 0) return 1;
+  if (within < 1e-3) return 1 - within / 2 + within * within / 6;
   // e^λ as a power of 2^20, with the same bits on every machine.
   double power = 1 + within * 0x1p-20;
   for (int i = 0; i < 20; ++i)
     power *= power;
-  return (1 - 1 / power) / within;
+  return std::clamp((1 - 1 / power) / within, 0.0, 1.0);
 }
 
 SpacedBlocks::SpacedBlocks(const World& world, std::optional<core::BlockCoord> centre)
@@ -94,8 +94,8 @@ bool Spacing::comes_first(const Candidate& a, core::BlockCoord a_block, const Ca
   return rank(a, a_block) < rank(b, block_);
 }
 
-Spacing::Below Spacing::below(const Beside& beside, const models::BlockGround& ground,
-                              glm::dvec2 corner_m) const {
+Spacing::GroundAt Spacing::ground_of(const Beside& beside, const models::BlockGround& ground,
+                                     glm::dvec2 corner_m) const {
   if (beside.offset == glm::ivec2(0, 0) || ground.node_level() > 0)
     return {ground, corner_m + glm::dvec2(beside.offset) * size_m_};
   SpacedBlock& block = *beside.spaced;
@@ -105,12 +105,12 @@ Spacing::Below Spacing::below(const Beside& beside, const models::BlockGround& g
   return {*block.ground, {0, 0}};
 }
 
-bool Spacing::is_allowed(const Beside& beside, Candidate& candidate, const Below& below) const {
+bool Spacing::is_allowed(const Beside& beside, Candidate& candidate, const GroundAt& at) const {
   if (!candidate.is_allowed) {
     auto& search = beside.spaced->searches[candidate.scatter];
     if (!search)
       search.emplace(world_, world_.scatter[candidate.scatter], beside.spaced->obstacles);
-    candidate.is_allowed = search->find(below.ground, candidate.index, below.corner_m).has_value();
+    candidate.is_allowed = search->find(at.ground, candidate.index, at.corner_m).has_value();
   }
   return *candidate.is_allowed;
 }
@@ -141,7 +141,7 @@ bool Spacing::is_crowded(std::uint32_t index, const models::BlockGround& ground,
   const auto is_in_the_way = [&](const Beside& there, Candidate& other, double away2) {
     const double apart_m = (spacing_m + world_.scatter[other.scatter].spacing_m) / 2;
     return away2 < apart_m * apart_m && comes_first(other, there.spaced->block, own) &&
-           is_allowed(there, other, below(there, ground, corner_m));
+           is_allowed(there, other, ground_of(there, ground, corner_m));
   };
   return any_within(own.at_m, (spacing_m + blocks_.widest_m()) / 2, is_in_the_way);
 }
@@ -152,7 +152,7 @@ bool Spacing::any_stands(const SiteRules& site, const models::BlockGround& groun
     if ((site.beside >> other.scatter & 1U) == 0 || away2 >= site.beside_m * site.beside_m)
       return false;
     if (!other.stands) {
-      const Below here = below(there, ground, corner_m);
+      const GroundAt here = ground_of(there, ground, corner_m);
       const bool is_own = there.offset == glm::ivec2(0, 0);
       Spacing& around = is_own ? *this : there.spaced->obstacles.others();
       other.stands = is_allowed(there, other, here) &&

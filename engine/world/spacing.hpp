@@ -83,16 +83,17 @@ class Spacing {
     SpacedBlock* spaced;
   };
   // A ground, and where a block's corner is in it.
-  struct Below {
+  struct GroundAt {
     const models::BlockGround& ground;
     glm::dvec2 corner_m;
   };
   Beside beside(glm::ivec2 offset);
   bool comes_first(const Candidate& a, core::BlockCoord a_block, const Candidate& b) const;
-  Below below(const Beside& beside, const models::BlockGround& ground, glm::dvec2 corner_m) const;
-  bool is_allowed(const Beside& beside, Candidate& candidate, const Below& below) const;
-  // True if `is_wanted(beside, candidate, squared distance)` is, for a candidate within reach of a
-  // place in the block.
+  GroundAt ground_of(const Beside& beside, const models::BlockGround& ground,
+                     glm::dvec2 corner_m) const;
+  bool is_allowed(const Beside& beside, Candidate& candidate, const GroundAt& at) const;
+  // Returns true if `is_wanted(beside, candidate, squared distance)` accepts any candidate within
+  // reach of a place in the block.
   template <class IsWanted>
   bool any_within(glm::dvec2 place_m, double reach_m, const IsWanted& is_wanted);
 

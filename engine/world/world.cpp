@@ -42,9 +42,7 @@ core::BlockCoord beside(const World& world, core::BlockCoord block) {
 }  // namespace
 
 std::uint64_t site_hash(const SiteRules& site) {
-  SiteRules places = site;
-  places.edge_size = 1;
-  if (places == SiteRules{}) return 0;
+  if (!site.limits_places()) return 0;
   std::uint64_t hash = core::mix64(site.beside + 1);
   for (const double rule :
        {site.min_slope_deg, site.facing_deg, site.facing_spread_deg, site.far_from_water_m,

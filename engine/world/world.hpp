@@ -70,6 +70,12 @@ struct SiteRules {
   // Scale of the upper ends of all ranges in metres at the border of the mask; 1: no scale.
   double edge_size = 1;
 
+  // True if any rule excludes ground.
+  bool limits_places() const {
+    SiteRules places = *this;
+    places.edge_size = 1;
+    return places != SiteRules{};
+  }
   bool limits_facing() const { return facing_spread_deg < 180; }
   bool asks_for_roads() const {
     return far_from_road_m > 0 || near_road_m < std::numeric_limits<double>::infinity();
@@ -116,7 +122,7 @@ struct Scatter {
     return mask.thins() || mask.ground != 0 ||
            min_height_m > -std::numeric_limits<double>::infinity() ||
            max_height_m < std::numeric_limits<double>::infinity() || max_slope_deg < 90 ||
-           limits_depth() || needs_water() || site_hash(site) != 0;
+           limits_depth() || needs_water() || site.limits_places();
   }
   friend bool operator==(const Scatter&, const Scatter&) = default;
 };

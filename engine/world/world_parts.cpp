@@ -53,7 +53,8 @@ std::uint64_t hash_of_models(const World& world, const models::Registry& registr
   for (const ParameterRange& range : scatter.ranges)
     hash = with_real(with_real(hash, range.low), range.high);
   if (scatter.site.edge_size < 1)
-    hash = core::combine(with_real(hash, scatter.site.edge_size), mask_hash(scatter.mask));
+    hash = core::combine(with_real(with_real(hash, scatter.site.edge_size), world.block_size_m()),
+                         mask_hash(scatter.mask));
   return scatter.tilt < 1 ? with_real(hash, scatter.tilt) : hash;
 }
 

@@ -801,7 +801,7 @@ MEASURES = [
     ("systems-max", 7, 7, systems_max, "most parameters of a system"),
     ("pass-files", 7, 7, pass_files, "files of engine/render and shaders that name particles, build lists included"),
     ("fragments", 3.0, 3.0, fragments, "% of subjects (a header with its source) under 40 lines"),
-    ("lines", 141680, 109000, lines, "lines of C++ in ecs, engine, editor and game"),
+    ("lines", 141740, 109000, lines, "lines of C++ in ecs, engine, editor and game"),
     ("page-lines", 709, 709, page_lines, "lines of JavaScript and CSS in ecs, engine, editor and game, which \"lines\" leaves out"),
     ("test-names", 0, 0, test_names, "names of tests that are no sentence in UpperCamel"),
     ("old-names", 0, 0, names_left, "old names of the changelog's table in code, and names with most or least for max or min"),

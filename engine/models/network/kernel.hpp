@@ -49,8 +49,8 @@ struct HeightRange {
 HeightRange range_of(const Patch& patch, const Box& box, bool guided);
 // Cuts channels and lakes.
 void carve_rows(const Patch& patch, const Samples& samples, const CarvedRows& rows);
-// The carved base without detail: both of these in less time. Of `rows`, base_m is not used, and
-// height_m is only written.
+// Evaluates the base and carves it in one call, faster than base_rows() and carve_rows(). Of
+// `rows`, base_m is not used, and height_m is only written.
 void ground_rows(const Patch& patch, const Samples& samples, CarvedRows rows);
 
 }  // namespace psygen::models::network

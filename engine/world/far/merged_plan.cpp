@@ -5,6 +5,7 @@
 #include <functional>
 #include <new>
 
+#include "engine/core/rounding.hpp"
 #include "engine/models/terrain/terrain.hpp"
 #include "engine/world/far/merged_models.hpp"
 #include "engine/world/far/node_walk.hpp"
@@ -33,6 +34,7 @@ std::uint32_t min_together(double pixels) {
 // as may stand. A node has more only where small patches of allowed ground lie far apart; the last
 // ones are left out there.
 std::uint64_t forms_at_most(const World& world, const Scatter& scatter, std::uint64_t groups) {
+  const core::RoundToNearest rounding;
   const double side_m = world.block_size_m();
   const double share = kept_share(scatter.count / (side_m * side_m), scatter.spacing_m);
   const auto all = static_cast<double>(groups);

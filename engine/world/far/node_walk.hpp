@@ -21,13 +21,13 @@ struct NodeBlock {
   glm::dvec2 in_node_m{0.0}, in_tile_m{0.0};
 };
 
-// Node level of the tiles of a node. Nodes of levels 1 and 2 have the terrain's own lattice (such
-// as 1 m), and so have all others if heights are cheap, without a warp, and a scatter has limits:
-// near and far decide alike then. Else the spacing doubles with each level from there on, so no
-// node has more than 16 tiles. With costly heights nodes from level 3 on have four, the grounds of
-// the nodes below.
+// Node level of the tiles of a node. Nodes of levels 1 and 2 use the terrain's own lattice (such as
+// 1 m). So do all levels if heights are cheap (no warp, erosion or rivers) and a scatter has
+// limits: far instances then stand exactly where near ones do. Other nodes double the spacing with
+// each level from 3 on and have at most 16 tiles, or 4, the grounds of the nodes below, with
+// erosion or rivers.
 int tile_level(const World& world, int node_level);
-// Number of tiles of a node.
+// Number of tiles of a node, 1 … 4^node_level.
 std::uint32_t ground_tiles(const World& world, int node_level);
 
 // The level of detail of the terrain that nodes of level 1 and above draw.

@@ -19,6 +19,9 @@ namespace {
 // log2 of the maximum number of triangles of all models of one block.
 constexpr double kMaxLog2BlockCost = 26;
 constexpr int kMaxSpacingSides = 4, kMaxWithinSpacing = 8192, kMaxFootCells = 64;
+// Places that instances beside others try on a block, times the others within reach.
+constexpr double kMaxBesideSteps = 4e6;
+constexpr double kUsualBesideM = 5;         // beyond the distance that spacings need
 constexpr Limits kMaskPlaces{-1e12, 1e12};  // metres
 constexpr Limits kPlacePoints{-kFarthestShapeM, kFarthestShapeM};
 
@@ -104,10 +107,13 @@ void read_site(TableReader& reader, const World& world, const models::Registry& 
     reader.problem("near_road_m", "it must be above far_from_road_m");
   if (site.edge_size < 1 && !(scatter.keeps_apart() && scatter.mask.thins()))
     reader.problem("edge_size", "it needs a mask and spacing_m");
+  if (scatter.needs_water() && scatter.near_water_m <= site.far_from_water_m)
+    reader.problem("near_water_m", "it must be above far_from_water_m");
   std::string name;
   const bool is_beside = reader.read("beside", name, 64);
-  if (is_beside != scatter.is_beside())
-    return reader.problem("beside", "beside, a model, and beside_m need each other");
+  if (!is_beside && scatter.is_beside())
+    return reader.problem("beside_m",
+                          "it is the distance to the model of beside, which is missing");
   double widest_m = 0, narrowest_m = std::numeric_limits<double>::infinity();
   for (std::size_t s = 0; is_beside && s < world.scatter.size(); ++s) {
     const Scatter& other = world.scatter[s];
@@ -122,14 +128,15 @@ void read_site(TableReader& reader, const World& world, const models::Registry& 
     reader.problem("beside", fmt::format("spacing_m must be at most {:g} m, as in the earlier "
                                          "[[scatter]] of this model",
                                          narrowest_m));
-  if (const double apart_m = (widest_m + scatter.spacing_m) / 2;
-      is_beside && scatter.keeps_apart() && site.beside_m <= apart_m)
+  const double apart_m = scatter.keeps_apart() ? (widest_m + scatter.spacing_m) / 2 : 0;
+  if (is_beside && reader.find("beside_m") == nullptr) site.beside_m = apart_m + kUsualBesideM;
+  if (is_beside && site.beside_m <= apart_m)
     reader.problem(
         "beside_m",
         fmt::format("it must be above {:g} m, because spacings keep both apart", apart_m));
 }
 
-// Reports spacings that reach too far, or over too many candidates to try.
+// Reports spacings and distances that reach too far, or over too many candidates to try.
 void check_spacing(TableReader& root, int line, const World& world) {
   double candidates = 0, widest_m = 0;
   for (const Scatter& scatter : world.scatter) {
@@ -137,22 +144,34 @@ void check_spacing(TableReader& root, int line, const World& world) {
     candidates += scatter.count;
     widest_m = std::max(widest_m, scatter.spacing_m);
   }
+  // One may stand beside another, which stands beside a third, and so on.
   for (const Scatter& scatter : world.scatter)
-    widest_m = std::max(widest_m, scatter.site.beside_m);
+    widest_m += scatter.site.beside_m;
   const double sides = widest_m / world.block_size_m();
   if (sides > kMaxSpacingSides)
     return root.problem(
         line, "scatter",
-        fmt::format(
-            "spacing_m or beside_m = {:g} is too much: allowed are {} sides of a block, {:g} m",
-            widest_m, kMaxSpacingSides, kMaxSpacingSides * world.block_size_m()));
+        fmt::format("spacing_m and all beside_m reach {:g} m, too far: allowed are {} sides of a "
+                    "block, {:g} m",
+                    widest_m, kMaxSpacingSides, kMaxSpacingSides * world.block_size_m()));
   // The strips of blocks that a search walks through.
   const double within = 2 * sides * (2 * std::ceil(sides) + 1) * candidates;
   if (within > kMaxWithinSpacing)
+    return root.problem(line, "scatter",
+                        fmt::format("within the {:g} m of spacing_m and all beside_m, instances "
+                                    "have {:.0f} others within reach, too many (allowed: {}); "
+                                    "lower spacing_m, beside_m or count",
+                                    widest_m, within, kMaxWithinSpacing),
+                        core::ErrorCode::kOverBudget);
+  double tries = 0;
+  for (const Scatter& scatter : world.scatter)
+    if (scatter.is_beside()) tries += scatter.count * (scatter.keeps_apart() ? 1 : kPlacementTries);
+  if (tries * within > kMaxBesideSteps)
     root.problem(line, "scatter",
-                 fmt::format("instances with a spacing of {:g} m have {:.0f} others within reach, "
-                             "too many (allowed: {}); lower spacing_m or count",
-                             widest_m, within, kMaxWithinSpacing),
+                 fmt::format("the tables with beside try {:.0f} places on a block, with {:.0f} "
+                             "others within reach: too many (allowed: {:g} together); lower "
+                             "count, or give them a spacing_m",
+                             tries, within, kMaxBesideSteps),
                  core::ErrorCode::kOverBudget);
 }
 

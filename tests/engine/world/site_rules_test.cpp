@@ -226,6 +226,18 @@ TEST(SiteRules, PatchesFadeAndTheirBordersHaveSmallInstances) {
   }
 }
 
+// Bushes beside bushes beside oaks: a chain costs no more than its blocks.
+TEST(SiteRules, ChainsStandBesideEachOther) {
+  const std::string link = "[[scatter]]\nmodel = \"rock\"\ncount = 40\nspacing_m = 0.001\n";
+  std::string text = land("beside = \"tree\"\nbeside_m = 12\n");
+  for (int i = 0; i < 4; ++i)
+    text += link + "beside = \"rock\"\nbeside_m = 9\n";
+  const World world = parsed(text);
+  EXPECT_EQ(world.scatter[5].site.beside, 0b11110U);
+  const Stands all = bushes_of(world);
+  EXPECT_GT(all.size(), bushes_of(parsed(land("beside = \"tree\"\nbeside_m = 12\n"))).size());
+}
+
 TEST(SiteRules, AreWrittenAndTellTheTablesThatTheyConcern) {
   const std::string rules =
       "min_slope_deg = 2\nmax_slope_deg = 50\nfacing_deg = 90\nfacing_spread_deg = 120\n"
@@ -236,16 +248,19 @@ TEST(SiteRules, AreWrittenAndTellTheTablesThatTheyConcern) {
   EXPECT_EQ(parsed(write_world(world, registry())), world);
   EXPECT_EQ(site_hash(none.scatter[1].site), 0U);
   const WorldParts parts = parts_of(world, registry());
-  for (const char* rule : {"min_slope_deg = 2", "facing_deg = 90", "facing_spread_deg = 120",
-                           "max_above_water_m = 30", "far_from_water_m = 5", "near_road_m = 200",
-                           "far_from_road_m = 3", "beside_m = 20", "mask_fade = 0.5"}) {
-    const std::string other = testing::replaced(
-        land(rules), rule, std::string(rule).substr(0, std::string(rule).find(' ')) + " = 0.9");
-    const auto changed = parse_world(other, "site.toml", registry());
-    if (!changed) continue;
-    EXPECT_NE(parts_of(*changed, registry()).places[1], parts.places[1]) << rule;
-    EXPECT_EQ(parts_of(*changed, registry()).models[0], parts.models[0]) << rule;
-    EXPECT_NE(merged_identity(*changed, registry()), merged_identity(world, registry())) << rule;
+  using Change = std::pair<const char*, const char*>;
+  for (const auto& [rule, other] : {Change{"min_slope_deg = 2", "min_slope_deg = 3"},
+                                    {"facing_deg = 90", "facing_deg = 80"},
+                                    {"facing_spread_deg = 120", "facing_spread_deg = 110"},
+                                    {"max_above_water_m = 30", "max_above_water_m = 31"},
+                                    {"far_from_water_m = 5", "far_from_water_m = 6"},
+                                    {"near_road_m = 200", "near_road_m = 100"},
+                                    {"far_from_road_m = 3", "far_from_road_m = 4"},
+                                    {"beside_m = 20", "beside_m = 15"},
+                                    {"mask_fade = 0.5", "mask_fade = 0.4"}}) {
+    const World changed = parsed(testing::replaced(land(rules), rule, other));
+    EXPECT_NE(parts_of(changed, registry()).places[1], parts.places[1]) << rule;
+    EXPECT_NE(merged_identity(changed, registry()), merged_identity(world, registry())) << rule;
   }
   const World small = parsed(testing::replaced(land(rules), "edge_size = 0.5", "edge_size = 0.4"));
   EXPECT_EQ(parts_of(small, registry()).places, parts.places);
@@ -265,13 +280,21 @@ TEST(SiteRules, ThatContradictEachOtherAreRefused) {
   expect("max_above_water_m = 3\n", "it needs near_water_m");
   expect("near_road_m = 3\nfar_from_road_m = 3\n", "must be above far_from_road_m");
   expect("edge_size = 0.5\n", "it needs a mask and spacing_m");
-  expect("beside = \"tree\"\n", "need each other");
-  expect("beside_m = 3\n", "need each other");
+  expect("beside_m = 3\n", "which is missing");
+  EXPECT_EQ(parsed(land("beside = \"tree\"\n")).scatter[1].site.beside_m, (8 + 0.001) / 2 + 5);
+  expect("near_water_m = 3\nfar_from_water_m = 3\n", "must be above far_from_water_m");
   expect("beside = \"grass\"\nbeside_m = 3\n", "no earlier [[scatter]]");
   expect("beside = \"heron\"\nbeside_m = 3\n", "no earlier [[scatter]]");
   expect("beside = \"tree\"\nbeside_m = 3\n", "must be above 4");
   expect("beside = \"tree\"\nbeside_m = 300\n", "4 sides of a block");
   expect("facing_spread_deg = 200\n", "facing_spread_deg");
+  const std::string many = testing::replaced(
+      testing::replaced(land("beside = \"tree\"\nbeside_m = 60\n"), "spacing_m = 0.001\n", ""),
+      "count = 200", "count = 3000");
+  const auto slow = parse_world(many, "site.toml", registry());
+  ASSERT_FALSE(slow);
+  EXPECT_NE(slow.error().message.find("the tables with beside try 72000 places"), std::string::npos)
+      << slow.error().message;
   EXPECT_EQ(problem("min_slope_deg = 20\nmax_slope_deg = 20\n"), "");
   const std::string wide = testing::replaced(land("beside = \"tree\"\nbeside_m = 30\n"),
                                              "spacing_m = 0.001", "spacing_m = 9");
@@ -280,23 +303,47 @@ TEST(SiteRules, ThatContradictEachOtherAreRefused) {
   EXPECT_NE(refused.error().message.find("spacing_m must be at most 8 m"), std::string::npos);
 }
 
-// Nodes have room for all that stand, and less than for all that try.
+// The room of a mesh is a share of all that try.
 TEST(SiteRules, MergedMeshesHaveRoomForWhatStands) {
-  const auto text = [](const char* spacing) {
-    return testing::replaced(land(""), "count = 30\nspacing_m = 8",
-                             std::string("count = 120\nspacing_m = ") + spacing);
+  const auto text = [](const char* count, const char* spacing_m) {
+    std::string bare = testing::replaced(land(""), "count = 200", "count = 0");
+    bare = testing::replaced(bare, "min_height_m = 50\n", "");
+    return testing::replaced(bare, "count = 30\nspacing_m = 8",
+                             std::string("count = ") + count + "\nspacing_m = " + spacing_m);
   };
-  const auto size_of = [](const World& world, std::int32_t level) {
+  const auto size_of = [](const World& world) {
     const auto type = make_merged_type(std::make_shared<const World>(world), registry());
-    return type->mesh_size(merged_parameters({1, 1}, level), 0).vertex_count;
+    return static_cast<double>(type->mesh_size(merged_parameters({1, 1}, 3), 0).vertex_count);
   };
-  const World apart = parsed(text("4")), free = parsed(text("0"));
-  EXPECT_LT(size_of(apart, 3), 0.7 * size_of(free, 3));
-  for (const double spacing_m : {1.0, 4.0, 30.0}) {
-    const double within = 120 * std::numbers::pi * spacing_m * spacing_m / 4096;
-    EXPECT_NEAR(kept_share(120.0 / 4096, spacing_m), (1 - std::exp(-within)) / within, 1e-6);
+  for (const char* count : {"5", "120"}) {
+    const double free = size_of(parsed(text(count, "0")));
+    for (const char* spacing_m : {"0.0001", "0.001", "0.05", "1", "4", "30"}) {
+      const World apart = parsed(text(count, spacing_m));
+      std::vector<Placement> placed;
+      double standing = 0;
+      for (int i = 0; i < 64; ++i) {
+        place_models(apart, registry(), {8 + i % 8, 8 + i / 8}, placed);
+        standing += static_cast<double>(placed.size());
+      }
+      const double room = size_of(apart) / free;
+      EXPECT_LE(room, 1);
+      EXPECT_GE(room * 64 * std::stod(count), standing) << count << " " << spacing_m;
+    }
   }
+  EXPECT_LT(size_of(parsed(text("120", "4"))), 0.7 * size_of(parsed(text("120", "0"))));
+}
+
+TEST(SiteRules, TheShareThatStandsIsExactForAllSpacings) {
   EXPECT_EQ(kept_share(1, 0), 1);
+  for (double spacing_m = 1e-6; spacing_m < 300; spacing_m *= 1.3) {
+    for (const double count : {1.0, 20.0, 16384.0}) {
+      const double within = count / 4096 * std::numbers::pi * spacing_m * spacing_m;
+      const double share = kept_share(count / 4096, spacing_m);
+      EXPECT_NEAR(share, -std::expm1(-within) / within, 1e-5);
+      EXPECT_GT(share, 0);
+      EXPECT_LE(share, 1);
+    }
+  }
 }
 
 }  // namespace

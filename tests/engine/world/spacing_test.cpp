@@ -248,6 +248,8 @@ Difference difference_of(const World& world, int level, bool shares = false) {
 // Where heights are cheap, limits of the ground are those of the exact ground.
 TEST(Spacing, StandsFarAsNear) {
   const World free = parsed(wood()), limited = parsed(wood("spacing_m = 5\nmax_slope_deg = 40")),
+              warped = parsed(testing::replaced(wood("spacing_m = 5\nmax_slope_deg = 40"),
+                                                "relief_m = 160", "relief_m = 160\nwarp = 0.3")),
               beside =
                   parsed(wood("spacing_m = 5", "spacing_m = 1\nbeside = \"tree\"\nbeside_m = 6"));
   for (const int level : {1, 2, 3, 4}) {
@@ -260,6 +262,9 @@ TEST(Spacing, StandsFarAsNear) {
     EXPECT_EQ(difference_of(beside, level).differ, 0U);
     EXPECT_GT(in_limited.near, 200U);
     EXPECT_EQ(in_limited.differ, 0U);
+    const Difference in_warped = difference_of(warped, level);
+    EXPECT_EQ(difference_of(warped, level, true).differ, in_warped.differ);
+    EXPECT_LE(in_warped.differ, level <= 2 ? 0 : in_warped.near / 5);
   }
 }
 

@@ -407,7 +407,8 @@ TEST(MergedModels, AreFilteredAsTheSingleModelsAre) {
   }
 }
 
-// From level 3 on slopes come from a coarser lattice: about as many models find a position.
+// With rivers, slopes come from a coarser lattice from level 3 on: about as many models find a
+// position.
 TEST(MergedModels, KeepAboutAsManyModelsOnTheCoarserGround) {
   const Scenery scenery(text_of("silver_combe.toml"));
   const core::BlockCoord node{1, 1};
