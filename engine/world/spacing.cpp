@@ -29,6 +29,7 @@ SpacedBlocks::SpacedBlocks(const World& world, std::optional<core::BlockCoord> c
     first += scatter.count;
     widest_m_ = std::max(widest_m_, scatter.spacing_m);
     reach_m_ = std::max({reach_m_, scatter.spacing_m, scatter.site.beside_m});
+    if (scatter.is_beside()) centre_.reset();  // asks what stands around the neighbours, too
   }
 }
 

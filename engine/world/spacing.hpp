@@ -44,8 +44,8 @@ struct SpacedBlock {
 // The blocks that one or more Spacing ask about, drawn when they are first needed.
 class SpacedBlocks {
  public:
-  // With a centre only the candidates that may reach this block are drawn; without one, blocks
-  // share all. `world` must outlive it.
+  // With a centre only the candidates that may reach this block are drawn. Without one, or if any
+  // scatter stands beside another, blocks share all. `world` must outlive it.
   explicit SpacedBlocks(const World& world, std::optional<core::BlockCoord> centre = {});
   SpacedBlock& at(core::BlockCoord block);
   // The candidate of instance `index`.
