@@ -208,6 +208,7 @@ LevelPlan plan_level(const World& world, std::span<const FarScatter> scatters,
 
 std::size_t questions_per_tile(const World& world, const LevelPlan& plan) {
   constexpr std::uint64_t kTries = 4;  // of the positions that an instance may try, about
+  if (world.has_costly_heights()) return 65'536;  // a place costs as much as a whole tile
   std::uint64_t groups = 0;
   for (const ScatterPlan& how : plan.scatters)
     groups += how.groups;
