@@ -55,7 +55,7 @@ double mask_share(const ScatterMask& mask, std::uint64_t seed, glm::dvec2 place_
     const double full = models::patch_noise_below(mask.share - width);
     constexpr double kNearlyAll = 0.9999;  // the noise has no value at which all of it is below
     const double none =
-        models::patch_noise_below(std::min(mask.share + width, std::max(mask.share, kNearlyAll)));
+        width > 0 ? models::patch_noise_below(std::min(mask.share + width, kNearlyAll)) : full;
     if (noise >= none) return 0;
     if (noise > full) share = (none - noise) / (none - full);
   }

@@ -34,10 +34,6 @@ BlockObstacles::BlockObstacles(const World& world, core::BlockCoord block, Space
     : world_(world), block_(block), shared_(shared) {}
 BlockObstacles::~BlockObstacles() = default;
 
-double BlockObstacles::block_m() const {
-  return world_.block_size_m();
-}
-
 std::span<const models::GroundEdit* const> BlockObstacles::roads(double margin_m) {
   if (world_.shaped.roads.empty() || !world_.shaped.layer) return {};
   const auto [answer, is_new] = roads_.try_emplace(margin_m);
@@ -71,11 +67,15 @@ PlaceSearch::PlaceSearch(const World& world, const Scatter& scatter, BlockObstac
       has_filter_(scatter.has_filter()),
       obstacles_(block),
       block_(block.block()),
-      min_up_(static_cast<float>(std::cos(glm::radians(scatter.max_slope_deg)))),
-      max_up_(static_cast<float>(std::cos(glm::radians(scatter.site.min_slope_deg)))),
-      min_facing_(static_cast<float>(std::cos(glm::radians(scatter.site.facing_spread_deg)))),
-      facing_(std::sin(glm::radians(scatter.site.facing_deg)),
-              -std::cos(glm::radians(scatter.site.facing_deg))) {
+      min_up_(static_cast<float>(std::cos(glm::radians(scatter.max_slope_deg)))) {
+  const SiteRules& site = scatter.site;
+  if (site.min_slope_deg > 0)
+    max_up_ = static_cast<float>(std::cos(glm::radians(site.min_slope_deg)));
+  if (site.limits_facing()) {
+    const double towards = glm::radians(site.facing_deg);
+    facing_ = glm::vec2(std::sin(towards), -std::cos(towards));
+    min_facing_ = static_cast<float>(std::cos(glm::radians(site.facing_spread_deg)));
+  }
   if (scatter.mask.ground != 0) palette_ = drawn_palette(world);
 }
 
@@ -170,6 +170,11 @@ bool PlaceSearch::is_left_out(std::uint32_t index, glm::dvec2 local_m, double gr
 double PlaceSearch::mask_share(glm::dvec2 local_m) const {
   const glm::dvec2 corner_m = glm::dvec2(block_.x, block_.z) * static_cast<double>(size_m_);
   return world::mask_share(scatter_.mask, seed_, corner_m + local_m);
+}
+
+double PlaceSearch::mask_share(std::uint32_t index) const {
+  core::RandomStream random(seed_, block_.x, block_.z, index, core::Purpose::kPosition);
+  return mask_share(draw_place(random, static_cast<double>(size_m_)));
 }
 
 std::optional<Foothold> PlaceSearch::find(const models::BlockGround& ground, std::uint32_t index,

@@ -42,7 +42,6 @@ class BlockObstacles {
   BlockObstacles(const World& world, core::BlockCoord block, SpacedBlocks* shared = nullptr);
   ~BlockObstacles();
   core::BlockCoord block() const { return block_; }
-  double block_m() const;
   // The roads that may come within so many metres of the block.
   std::span<const models::GroundEdit* const> roads(double margin_m);
   // True if there may be rivers or lakes within so many metres.
@@ -72,8 +71,8 @@ class PlaceSearch {
   // All arguments must outlive it.
   PlaceSearch(const World& world, const Scatter& scatter, BlockObstacles& block);
 
-  // The fraction of instances that the mask keeps at a position of the block, 0 … 1.
-  double mask_share(glm::dvec2 local_m) const;
+  // The fraction of instances that the mask keeps at the first position that an instance tries.
+  double mask_share(std::uint32_t index) const;
   // The first allowed position that instance `index` of the block tries. Nothing if no position is
   // allowed, or if a mask, a road or water excludes the one found. `ground` is the ground of the
   // block, or of a larger node in which the block's corner is at `corner_m`.
@@ -95,6 +94,7 @@ class PlaceSearch {
   bool may_be_near_inland(glm::dvec2 local_m, double reach_m) const;
   // The surface of the water of the world's function; of the sea only if nothing else is there.
   std::optional<WaterSurface> water_over(glm::dvec2 local_m, bool is_inland) const;
+  double mask_share(glm::dvec2 local_m) const;
   bool is_left_out(std::uint32_t index, glm::dvec2 local_m, double ground_m) const;
 
   const World& world_;
@@ -105,8 +105,9 @@ class PlaceSearch {
   bool has_filter_;
   BlockObstacles& obstacles_;
   core::BlockCoord block_;
-  float min_up_, max_up_, min_facing_;  // of the unit normal; cosine between slope and `facing_`
-  glm::vec2 facing_;
+  float min_up_, max_up_ = 2;  // of the unit normal
+  glm::vec2 facing_{0.0F};     // the direction, and the least cosine between it and the slope
+  float min_facing_ = -1;
   std::optional<Palette> palette_;  // set if the mask selects kinds of ground
 };
 

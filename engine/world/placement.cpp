@@ -55,9 +55,7 @@ void stand_on_edits(const Grounds& grounds, const Scatter& scatter, Foothold& pl
 void place_instances(const World& world, const models::Registry& registry, core::BlockCoord block,
                      const Grounds& grounds, const models::BlockEdits* edits,
                      const std::vector<bool>* wanted, std::vector<Placement>& out) {
-  std::optional<SpacedBlocks> shared;  // each block once, however long the chains of `beside` are
-  if (std::ranges::any_of(world.scatter, &Scatter::is_beside)) shared.emplace(world);
-  BlockObstacles obstacles(world, block, shared ? &*shared : nullptr);
+  BlockObstacles obstacles(world, block);
   std::uint32_t first = 0;
   for (std::size_t s = 0; s < world.scatter.size(); first += world.scatter[s++].count) {
     if (wanted != nullptr && !(*wanted)[s]) continue;
@@ -145,16 +143,11 @@ models::Parameters Scattering::parameters(std::uint32_t index, const glm::vec3& 
                             core::Purpose::kParameters);
   core::RandomStream seeds(seed_, obstacles_.block().x, obstacles_.block().z, index,
                            core::Purpose::kSeed);
-  double size = 1;
-  if (scatter_.site.edge_size < 1) {
-    core::RandomStream places(seed_, obstacles_.block().x, obstacles_.block().z, index,
-                              core::Purpose::kPosition);
-    size = std::lerp(scatter_.site.edge_size, 1.0,
-                     search_.mask_share(draw_place(places, obstacles_.block_m())));
-  }
+  const double edge = scatter_.site.edge_size;
+  const double size = edge < 1 ? std::lerp(edge, 1.0, search_.mask_share(index)) : 1;
   for (std::size_t i = 0; i < specs_.size(); ++i) {
     ParameterRange range = scatter_.ranges[i];
-    if (specs_[i].unit == "m") range.high = range.low + size * (range.high - range.low);
+    if (size < 1 && specs_[i].unit == "m") range.high = range.low + size * (range.high - range.low);
     if (specs_[i].source == models::ParameterSource::kPlaced) {
       if (specs_[i].name == "seed") p.set_integer(i, std::bit_cast<std::int64_t>(seeds.next_u64()));
     } else if (specs_[i].type == models::ParameterType::kInteger) {

@@ -235,7 +235,43 @@ TEST(SiteRules, ChainsStandBesideEachOther) {
   const World world = parsed(text);
   EXPECT_EQ(world.scatter[5].site.beside, 0b11110U);
   const Stands all = bushes_of(world);
-  EXPECT_GT(all.size(), bushes_of(parsed(land("beside = \"tree\"\nbeside_m = 12\n"))).size());
+  // Each stands beside one of an earlier table, which may be on the next block.
+  const auto place_m = [](int block, const Placement& p) {
+    return glm::dvec2(block_at(block).x, block_at(block).z) * 64.0 +
+           glm::dvec2(p.position.x, p.position.z);
+  };
+  std::size_t links = 0;
+  for (const auto& [key, stone] : all) {
+    if (stone.index < kOaks + kBushes) continue;
+    const glm::dvec2 at_m = place_m(key.first, stone), in_all = at_m - 64.0;
+    if (std::min(in_all.x, in_all.y) < 9 || std::max(in_all.x, in_all.y) > kSide * 64 - 9) continue;
+    ++links;
+    const std::uint32_t first = stone.index - (stone.index - kOaks - kBushes) % 40;  // of its table
+    EXPECT_TRUE(std::ranges::any_of(all, [&](const auto& other) {
+      const glm::dvec2 away = place_m(other.first.first, other.second) - at_m;
+      return other.second.index < first && std::hypot(away.x, away.y) < 9;
+    })) << stone.index;
+  }
+  EXPECT_GT(links, 100U);
+}
+
+// A world without the rule draws exactly what it drew before there was one. The sum of 0.09 and
+// 0.34 - 0.09 is not 0.34.
+TEST(SiteRules, WithoutAnEdgeSizesAreTheNumbersOfTheStream) {
+  const World world = parsed(testing::replaced(land(""), "[0.2, 1.2]", "[0.09, 0.34]"));
+  const models::ModelType& type = registry()[world.scatter[1].model];
+  const auto radius = static_cast<std::size_t>(models::parameter_index(type, "radius_m"));
+  std::size_t drawn_before = 0;
+  for (std::size_t i = 0; i < radius; ++i)
+    drawn_before += type.parameters()[i].source == models::ParameterSource::kUser ? 1 : 0;
+  for (const auto& [key, stone] : bushes_of(world)) {
+    const core::BlockCoord block = block_at(key.first);
+    core::RandomStream values(world.seed, block.x, block.z, stone.index,
+                              core::Purpose::kParameters);
+    for (std::size_t i = 0; i < drawn_before; ++i)
+      values.next_u64();
+    ASSERT_EQ(stone.parameters.real(radius), std::min(values.next_real(0.09, 0.34), 0.34));
+  }
 }
 
 TEST(SiteRules, AreWrittenAndTellTheTablesThatTheyConcern) {
